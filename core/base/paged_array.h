@@ -1,0 +1,64 @@
+// An array in pages that copies share until one of them writes: a copy of a mesh is a snapshot that costs a pointer a
+// page, and an edit costs the pages that it touches.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "core/base/check.h"
+
+namespace tessera {
+
+// Concurrent reads are safe; a write needs the array to itself (other copies may be read meanwhile).
+template <class T, size_t kPageBits = 9>
+class PagedArray {
+  public:
+    static constexpr size_t kPageSize = size_t{1} << kPageBits;
+
+    PagedArray() = default;
+    explicit PagedArray(size_t count, const T& value = T{}) { resize(count, value); }
+
+    size_t size() const { return mSize; }
+    bool empty() const { return mSize == 0; }
+
+    const T& operator[](size_t i) const { return mPages[i >> kPageBits]->at[i & (kPageSize - 1)]; }
+
+    // The element, for writing: its page is copied first where another array shares it.
+    T& edit(size_t i) {
+        std::shared_ptr<Page>& page = mPages[i >> kPageBits];
+        if (page.use_count() != 1) page = std::make_shared<Page>(*page);
+        return page->at[i & (kPageSize - 1)];
+    }
+
+    void pushBack(const T& value) {
+        if (mSize == mPages.size() * kPageSize) mPages.push_back(std::make_shared<Page>());
+        ++mSize;
+        edit(mSize - 1) = value;
+    }
+
+    void resize(size_t count, const T& value = T{}) {
+        if (count < mSize) {
+            mSize = count;
+            mPages.resize((count + kPageSize - 1) >> kPageBits);
+            return;
+        }
+        mPages.reserve((count + kPageSize - 1) >> kPageBits);
+        while (mSize < count) pushBack(value);
+    }
+
+    // Whether element i is, in memory, the very same in both arrays (so that nothing has changed it).
+    bool sharesPage(const PagedArray& other, size_t i) const {
+        return i < mSize && i < other.mSize && mPages[i >> kPageBits] == other.mPages[i >> kPageBits];
+    }
+
+  private:
+    struct Page {
+        T at[kPageSize]{};
+    };
+
+    std::vector<std::shared_ptr<Page>> mPages;
+    size_t mSize = 0;
+};
+
+}  // namespace tessera

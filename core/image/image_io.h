@@ -1,0 +1,62 @@
+// Pictures from and to files, through OpenImageIO and lcms2.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/image/image.h"
+
+namespace tessera {
+
+// Where a picture came from: kept in the document so that the source can be found, checked and written back in its
+// own colour space.
+struct SourceInfo {
+    std::string fileName;             // without folders
+    uint64_t byteSize = 0;            // of the file
+    std::string sha256;               // of the file, 64 hex digits
+    std::string format;               // as OpenImageIO names it: "png", "jpeg", "tiff", "openexr", ...
+    int width = 0;                    // after the EXIF orientation is applied
+    int height = 0;
+    int bitsPerChannel = 0;           // 8, 16 or 32 (float)
+    std::vector<uint8_t> iccProfile;  // as embedded; empty where the file has none
+
+    bool operator==(const SourceInfo&) const = default;
+};
+
+struct LoadedImage {
+    Image image;
+    SourceInfo source;
+};
+
+// Reads any picture that OpenImageIO knows, recognized by its content: grey, grey + alpha, RGB, RGBA, palette, CMYK;
+// 8 and 16 bit, half and float. EXIF orientation is applied; an embedded ICC profile is converted to sRGB by lcms2
+// (relative colorimetric, unbounded: what lies outside sRGB keeps values outside 0..1). Linear float pictures without
+// a profile are encoded with sRGB's curve, odd-symmetric about 0. NaN and infinite samples become 0. Fails with
+// CannotRead on missing, foreign, damaged or truncated files and on pictures of more than 400 million pixels, before
+// memory for the pixels is taken.
+Result<LoadedImage> readImage(const std::string& path);
+
+// The same from bytes in memory; `fileName` names them in errors and in SourceInfo.
+Result<LoadedImage> readImage(const std::vector<uint8_t>& bytes, const std::string& fileName);
+
+enum class PictureFormat { Png, Jpeg, Tiff, Exr };
+
+struct WriteOptions {
+    int bitsPerChannel = 8;  // 8 or 16 for PNG and TIFF; JPEG is 8, EXR is half float, linear
+    int jpegQuality = 95;    // 1..100
+};
+
+// The format that a path's suffix asks for; Usage where there is none that we write.
+Result<PictureFormat> pictureFormatFor(const std::string& path);
+
+// Writes a working-space image, un-premultiplied as the format wants it, clamped to the format's range, tagged as
+// sRGB (EXR: linear, premultiplied). JPEG has no alpha: it is composed over white. The file appears whole or not at
+// all: a temporary beside it is synced and renamed. Fails with CannotWrite.
+Result<void> writeImage(const Image& image, const std::string& path, const WriteOptions& options = {});
+
+// The picture as the bytes of a PNG of 8 bits a channel, as writeImage would write it.
+Result<std::vector<uint8_t>> encodePng(const Image& image);
+
+}  // namespace tessera
