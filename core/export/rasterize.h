@@ -1,0 +1,50 @@
+// The CPU renderer: the oracle for every other one, and fast enough to draw the window with (paper section 5).
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/mesh/patch_mesh.h"
+
+namespace tessera {
+
+// Which part of the picture fills an output of width x height pixels: output pixel (i, j) has its centre at image
+// point origin + ((i + .5) / scale.x, (j + .5) / scale.y).
+struct View {
+    glm::dvec2 origin{0, 0};  // image coordinates (px) of the output's upper left corner
+    glm::dvec2 scale{1, 1};   // output pixels per image pixel
+    int width = 0;
+    int height = 0;
+};
+
+// The whole picture at `scale`, its output size rounded to whole pixels (at least 1 x 1).
+View wholePicture(const PatchMesh& mesh, glm::dvec2 scale);
+
+// What a renderer found at each pixel centre of a view: the patch that owns it and the point's barycentric parameters.
+struct PixelOwner {
+    PatchId patch;       // none outside the picture
+    float v = 0, w = 0;  // u = 1 - v - w
+};
+
+struct RasterizeOptions {
+    int samples = 1;  // per pixel: 1 (its centre), 4 or 16 (a regular grid, averaged)
+};
+
+// (a) Section 5 as it stands: every patch is subdivided 4-way until a piece's bounding box is smaller than an output
+// pixel; pieces are triangles; a pixel centre in one gets its parameters by barycentric interpolation, then its colour
+// by one evaluation of the spline. Slow and plain: the reference. Pixels that no piece covers stay 0.
+Image rasterizeReference(const PatchMesh& mesh, const View& view);
+std::vector<PixelOwner> locatePixelsReference(const PatchMesh& mesh, const View& view);
+
+// (b) The fast path: sides flattened to a tolerance, the same points from both sides of an edge, on an integer grid;
+// scan conversion with one owner for each pixel centre; exact parameters by Newton's method where a patch is not
+// affine; splines evaluated a patch at a time with vector instructions; tiles in parallel. Output is in the working
+// space, not clamped, transparent or 0 outside the picture. Fails only with Stopped.
+Result<Image> rasterize(const PatchMesh& mesh, const View& view, const RasterizeOptions& options = {},
+                        Progress* progress = nullptr);
+// Owners of the pixel centres by the same scan conversion, row by row.
+std::vector<PixelOwner> locatePixels(const PatchMesh& mesh, const View& view);
+
+}  // namespace tessera
