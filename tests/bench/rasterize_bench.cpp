@@ -58,6 +58,7 @@ void benchRenderers() {
         std::printf("  %-44s %8.1f  (%.2f)\n", what, 1000 / ms, ms);
     };
     const View view = wholePicture(curved, {1, 1});
+    report("reference, curved", shortest(2, [&] { (void)rasterizeReference(curved, view); }));
     for (const int threads : {1, 2})
         withThreads(threads, [&] {
             std::printf(" %d thread%s\n", threads, threads > 1 ? "s" : "");
