@@ -38,10 +38,12 @@ struct RasterizeOptions {
 Image rasterizeReference(const PatchMesh& mesh, const View& view);
 std::vector<PixelOwner> locatePixelsReference(const PatchMesh& mesh, const View& view);
 
-// (b) The fast path: sides flattened to a tolerance, the same points from both sides of an edge, on an integer grid;
-// scan conversion with one owner for each pixel centre; exact parameters by Newton's method where a patch is not
-// affine; splines evaluated a patch at a time with vector instructions; tiles in parallel. Output is in the working
-// space, not clamped, transparent or 0 outside the picture. Fails only with Stopped.
+// (b) The fast path: each edge's curve meets the rows of pixel centres once, and both patches beside it use the same
+// crossings, so that a pixel centre has one owner; parameters by Newton's method where a patch is not affine; splines
+// evaluated a patch at a time with vector instructions; tiles in parallel. A pixel's value depends neither on threads
+// nor on tiles, and views of one scale whose origins are whole output pixels apart agree on it. A pixel centre on a
+// curve belongs to the patch on its right, or below. Output is in the working space, not clamped, transparent or 0
+// outside the picture. `progress`, where given, is stepped within the caller's stage. Fails only with Stopped.
 Result<Image> rasterize(const PatchMesh& mesh, const View& view, const RasterizeOptions& options = {},
                         Progress* progress = nullptr);
 // Owners of the pixel centres by the same scan conversion, row by row.

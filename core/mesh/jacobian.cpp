@@ -49,7 +49,7 @@ struct Quartic {
 
 // Both halves of the side between the first two corners, each coefficient times 2^4: (a, m, c) and (m, b, c).
 void halve(const Quartic& q, Quartic& first, Quartic& second) {
-    Wide level[5][5];
+    Wide level[5][5] = {};
     for (int k = 0; k <= 4; ++k) {
         // Along lines of constant k the polynomial is a univariate one of degree n.
         const int n = 4 - k;

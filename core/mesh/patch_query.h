@@ -21,6 +21,10 @@ Rect controlBounds(const PatchMesh& mesh, PatchId p);
 // size outside; none where it does not converge to 1e-9 of the patch's size.
 std::optional<Barycentric> invert(const BezierTriangle& patch, glm::dvec2 point);
 
+// Parameters in the domain for any point: those of the point itself where it lies inside the patch; else the nearest
+// parameters, whose point is within `tolerance` px of it; else those of the nearest point of the sides.
+Barycentric nearestParameters(const BezierTriangle& patch, glm::dvec2 point, double tolerance);
+
 struct PatchHit {
     PatchId patch;
     Barycentric at;

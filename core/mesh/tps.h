@@ -63,6 +63,9 @@ double evaluateSpline(const PatchSpline& spline, int c, glm::dvec2 at);
 // phi is accurate to 1e-6 on the domain. Thread-safe. (tps_simd.cpp)
 void evaluateSplines(const PatchSpline& spline, int channels, const float* x, const float* y, size_t count,
                      float* const* out);
+// The same without vector instructions: what a machine without AVX2 gets.
+void evaluateSplinesScalar(const PatchSpline& spline, int channels, const float* x, const float* y, size_t count,
+                           float* const* out);
 
 // What the machine offers and evaluateSplines uses: "avx2" or "scalar".
 const char* splineInstructionSet();

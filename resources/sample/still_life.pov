@@ -237,7 +237,7 @@ union {
       }
       scale 0.088 translate S
     }
-    normal { bumps 0.035 scale 0.09 }
+    normal { average normal_map { [1 bumps 0.07 scale 0.09] [1 bumps 0.26 scale 0.011] } }
     finish { diffuse 0.75 specular 0.16 roughness 0.025
              reflection { 0.004, 0.22 fresnel on } conserve_energy }
   }

@@ -1,0 +1,195 @@
+// See rasterize.h: the fast path.
+#include "core/export/rasterize.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/export/patch_inverse.h"
+#include "core/export/scan_conversion.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr int kTileWidth = 128;
+constexpr int kTileHeight = 64;
+
+// Pixels of one patch with their parameters, as the runs that they came in.
+struct Batch {
+    static constexpr size_t kSize = PatchInverse::kMaxBatch;
+
+    PatchId patch;
+    size_t count = 0;
+    std::vector<PixelRun> runs;
+    alignas(32) float x[kSize], y[kSize];  // relative to the patch
+    alignas(32) float v[kSize], w[kSize];
+};
+
+struct Tile {
+    PixelRect rect;
+    std::vector<uint32_t> patches;  // indices into ScanConversion::patches(), descending
+};
+
+// The tiles of a view with the patches that may reach into them. Descending, so that where two patches claim
+// a pixel the smaller id writes last.
+std::vector<Tile> makeTiles(const ScanConversion& scan, int tileWidth, int tileHeight) {
+    const PixelGrid& grid = scan.grid();
+    const int columns = (grid.width + tileWidth - 1) / tileWidth,
+              rows = (grid.height + tileHeight - 1) / tileHeight;
+    std::vector<Tile> tiles(size_t(columns) * size_t(rows));
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < columns; ++i)
+            tiles[size_t(j) * size_t(columns) + size_t(i)].rect = {
+                i * tileWidth, j * tileHeight, std::min(grid.width, (i + 1) * tileWidth),
+                std::min(grid.height, (j + 1) * tileHeight)};
+    for (size_t p = scan.patches().size(); p-- > 0;) {
+        const PixelRect& box = scan.bounds(p);
+        for (int j = box.y0 / tileHeight; j <= (box.y1 - 1) / tileHeight; ++j)
+            for (int i = box.x0 / tileWidth; i <= (box.x1 - 1) / tileWidth; ++i)
+                tiles[size_t(j) * size_t(columns) + size_t(i)].patches.push_back(uint32_t(p));
+    }
+    return tiles;
+}
+
+// Calls emit(batch) with all pixels of the tile, each patch's in batches, patches in descending order.
+template <class Emit>
+void processTile(const PatchMesh& mesh, const ScanConversion& scan, const Tile& tile, Batch& batch,
+                 Emit&& emit) {
+    const PixelGrid& grid = scan.grid();
+    std::vector<PixelRun> runs;
+    const double tolerance = .1 / std::max(grid.scale.x, grid.scale.y);
+    for (const uint32_t index : tile.patches) {
+        batch.patch = scan.patches()[index];
+        const PixelRect& box = scan.bounds(index);
+        scan.runs(batch.patch,
+                  {std::max(tile.rect.x0, box.x0), std::max(tile.rect.y0, box.y0),
+                   std::min(tile.rect.x1, box.x1), std::min(tile.rect.y1, box.y1)},
+                  runs);
+        if (runs.empty()) continue;
+        const PatchInverse inverse(mesh.controlPoints(batch.patch), tolerance);
+        const auto flush = [&] {
+            inverse.solve(batch.x, batch.y, batch.count, batch.v, batch.w);
+            emit(batch);
+            batch.count = 0;
+            batch.runs.clear();
+        };
+        for (PixelRun run : runs) {
+            const auto y = float((grid.centreY(run.row) - inverse.centre().y) * inverse.inverseSize());
+            while (run.begin < run.end) {
+                const int end = std::min(run.end, run.begin + int(Batch::kSize - batch.count));
+                batch.runs.push_back({run.row, run.begin, end});
+                for (int i = run.begin; i < end; ++i, ++batch.count) {
+                    batch.x[batch.count] =
+                        float((grid.centreX(i) - inverse.centre().x) * inverse.inverseSize());
+                    batch.y[batch.count] = y;
+                }
+                run.begin = end;
+                if (batch.count == Batch::kSize) flush();
+            }
+        }
+        if (batch.count > 0) flush();
+    }
+}
+
+// Evaluates a batch's colours and writes them into `image`, whose pixel (0, 0) is the view's (x0, y0).
+void shade(const PatchMesh& mesh, const Batch& batch, Image& image, int x0, int y0) {
+    alignas(32) float x[Batch::kSize], y[Batch::kSize], colour[kMaxChannels][Batch::kSize];
+    for (size_t i = 0; i < batch.count; ++i) {
+        x[i] = batch.v[i] + .5f * batch.w[i];
+        y[i] = float(kDomainHeight) * batch.w[i];
+    }
+    float* out[kMaxChannels];
+    for (int c = 0; c < kMaxChannels; ++c) out[c] = colour[c];
+    evaluateSplines(mesh.spline(batch.patch), mesh.channels(), x, y, batch.count, out);
+    for (int c = 0; c < mesh.channels(); ++c) {
+        const float* from = colour[c];
+        float* plane = image.plane(c).data();
+        for (const PixelRun& run : batch.runs) {
+            const int n = run.end - run.begin;
+            std::copy_n(from, n,
+                        plane + size_t(run.row - y0) * size_t(image.width()) + size_t(run.begin - x0));
+            from += n;
+        }
+    }
+}
+
+// The mean of each n x n block of `fine`, into `image` from (x0, y0) on.
+void average(const Image& fine, int n, Image& image, int x0, int y0) {
+    const float share = 1 / float(n * n);
+    for (int c = 0; c < image.channels(); ++c)
+        for (int y = 0; y < fine.height() / n; ++y)
+            for (int x = 0; x < fine.width() / n; ++x) {
+                float sum = 0;
+                for (int j = 0; j < n; ++j)
+                    for (int i = 0; i < n; ++i) sum += fine.at(x * n + i, y * n + j, c);
+                image.at(x0 + x, y0 + y, c) = share * sum;
+            }
+}
+
+}  // namespace
+
+View wholePicture(const PatchMesh& mesh, glm::dvec2 scale) {
+    View view;
+    view.scale = scale;
+    view.width = std::max(1, int(std::lround(mesh.width() * scale.x)));
+    view.height = std::max(1, int(std::lround(mesh.height() * scale.y)));
+    return view;
+}
+
+Result<Image> rasterize(const PatchMesh& mesh, const View& view, const RasterizeOptions& options,
+                        Progress* progress) {
+    TESSERA_CHECK(options.samples == 1 || options.samples == 4 || options.samples == 16);
+    if (progress && progress->stopRequested()) return stopped();
+    Image image(view.width, view.height, mesh.channels());
+    // Sub-pixel centres are the pixel centres of the view n times as large.
+    const int n = options.samples == 1 ? 1 : options.samples == 4 ? 2 : 4;
+    View fine = view;
+    fine.scale *= n;
+    fine.width *= n;
+    fine.height *= n;
+    const ScanConversion scan(mesh, fine);
+    const std::vector<Tile> tiles = makeTiles(scan, kTileWidth * n, kTileHeight * n);
+    std::atomic<size_t> done{0};
+    std::atomic<bool> stop{false};
+    parallelFor(tiles.size(), 1, [&](size_t begin, size_t end) {
+        Batch batch;
+        for (size_t i = begin; i < end && !stop; ++i) {
+            const PixelRect& rect = tiles[i].rect;
+            if (n == 1) {
+                processTile(mesh, scan, tiles[i], batch,
+                            [&](const Batch& b) { shade(mesh, b, image, 0, 0); });
+            } else {
+                Image part(rect.x1 - rect.x0, rect.y1 - rect.y0, mesh.channels());
+                processTile(mesh, scan, tiles[i], batch,
+                            [&](const Batch& b) { shade(mesh, b, part, rect.x0, rect.y0); });
+                average(part, n, image, rect.x0 / n, rect.y0 / n);
+            }
+            const double fraction = double(++done) / double(tiles.size());
+            if (progress && !progress->step(fraction)) stop = true;
+        }
+    });
+    if (stop) return stopped();
+    return image;
+}
+
+std::vector<PixelOwner> locatePixels(const PatchMesh& mesh, const View& view) {
+    std::vector<PixelOwner> owners(size_t(view.width) * size_t(view.height));
+    const ScanConversion scan(mesh, view);
+    const std::vector<Tile> tiles = makeTiles(scan, kTileWidth, kTileHeight);
+    parallelFor(tiles.size(), 1, [&](size_t begin, size_t end) {
+        Batch batch;
+        for (size_t i = begin; i < end; ++i)
+            processTile(mesh, scan, tiles[i], batch, [&](const Batch& b) {
+                size_t k = 0;
+                for (const PixelRun& run : b.runs)
+                    for (int x = run.begin; x < run.end; ++x, ++k)
+                        owners[size_t(run.row) * size_t(view.width) + size_t(x)] = {b.patch, b.v[k], b.w[k]};
+            });
+    });
+    return owners;
+}
+
+}  // namespace tessera

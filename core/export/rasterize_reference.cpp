@@ -1,0 +1,99 @@
+// The renderer of the paper's section 5, as it is written there: the reference for the fast one (see
+// rasterize.h).
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "core/base/check.h"
+#include "core/export/rasterize.h"
+
+namespace tessera {
+
+namespace {
+
+// A piece of a patch in output pixels, and the patch's parameters at the piece's corners.
+struct Piece {
+    BezierTriangle shape;
+    std::array<Barycentric, 3> corners;
+};
+
+struct Target {
+    const View& view;
+    std::vector<PixelOwner>& owners;
+};
+
+// The second stage: pixel centres in the triangle of the piece's corners, bounds included. Where two pieces
+// meet in a pixel centre the first one keeps it.
+void fillTriangle(const Piece& piece, PatchId patch, Target& target) {
+    const glm::dvec2 a = piece.shape.corner(0), b = piece.shape.corner(1), c = piece.shape.corner(2);
+    const double area = cross(b - a, c - a);
+    if (area <= 0) return;
+    const glm::dvec2 lo = glm::min(a, glm::min(b, c)), hi = glm::max(a, glm::max(b, c));
+    const int x0 = std::max(0, int(std::ceil(lo.x - .5))),
+              x1 = std::min(target.view.width - 1, int(std::floor(hi.x - .5)));
+    const int y0 = std::max(0, int(std::ceil(lo.y - .5))),
+              y1 = std::min(target.view.height - 1, int(std::floor(hi.y - .5)));
+    for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x) {
+            const glm::dvec2 p(x + .5, y + .5);
+            const Barycentric in(cross(b - p, c - p) / area, cross(c - p, a - p) / area,
+                                 cross(a - p, b - p) / area);
+            if (in.x < 0 || in.y < 0 || in.z < 0) continue;
+            PixelOwner& owner = target.owners[size_t(y) * size_t(target.view.width) + size_t(x)];
+            if (owner.patch.valid()) continue;
+            const Barycentric at =
+                in.x * piece.corners[0] + in.y * piece.corners[1] + in.z * piece.corners[2];
+            owner = {patch, float(at.y), float(at.z)};
+        }
+}
+
+// The first stage: down to pieces whose bounding box is smaller than a pixel. (The box of the control points,
+// which holds the piece.)
+void subdivide(const Piece& piece, PatchId patch, Target& target) {
+    glm::dvec2 lo = piece.shape.p[0], hi = lo;
+    for (const glm::dvec2& p : piece.shape.p) {
+        lo = glm::min(lo, p);
+        hi = glm::max(hi, p);
+    }
+    if (hi.x < 0 || hi.y < 0 || lo.x > target.view.width || lo.y > target.view.height) return;
+    if (hi.x - lo.x < 1 && hi.y - lo.y < 1) return fillTriangle(piece, patch, target);
+    const auto children = subdivide4(piece.shape);
+    const auto& [a, b, c] = piece.corners;
+    const Barycentric i = .5 * (a + b), j = .5 * (b + c), k = .5 * (c + a);
+    subdivide({children[0], {a, i, k}}, patch, target);
+    subdivide({children[1], {i, b, j}}, patch, target);
+    subdivide({children[2], {k, j, c}}, patch, target);
+    subdivide({children[3], {i, j, k}}, patch, target);
+}
+
+}  // namespace
+
+std::vector<PixelOwner> locatePixelsReference(const PatchMesh& mesh, const View& view) {
+    TESSERA_CHECK(view.scale.x > 0 && view.scale.y > 0 && view.width >= 0 && view.height >= 0);
+    std::vector<PixelOwner> owners(size_t(view.width) * size_t(view.height));
+    Target target{view, owners};
+    mesh.forEachPatch([&](PatchId p) {
+        Piece whole{toPixels(mesh.controlPoints(p)),
+                    {Barycentric(1, 0, 0), Barycentric(0, 1, 0), Barycentric(0, 0, 1)}};
+        for (glm::dvec2& q : whole.shape.p) q = (q - view.origin) * view.scale;
+        subdivide(whole, p, target);
+    });
+    return owners;
+}
+
+Image rasterizeReference(const PatchMesh& mesh, const View& view) {
+    const std::vector<PixelOwner> owners = locatePixelsReference(mesh, view);
+    Image image(view.width, view.height, mesh.channels());
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+            const PixelOwner& owner = owners[size_t(y) * size_t(view.width) + size_t(x)];
+            if (!owner.patch.valid()) continue;
+            const double v = double(owner.v), w = double(owner.w);
+            const glm::dvec2 at = domainPoint({1 - v - w, v, w});
+            for (int c = 0; c < mesh.channels(); ++c)
+                image.at(x, y, c) = float(evaluateSpline(mesh.spline(owner.patch), c, at));
+        }
+    return image;
+}
+
+}  // namespace tessera

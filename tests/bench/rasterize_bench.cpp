@@ -1,0 +1,83 @@
+// Frames a second of both CPU renderers, and the cost of a spline evaluation.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/export/rasterize.h"
+#include "tests/support/test_meshes.h"
+
+namespace tessera {
+namespace {
+
+// The shortest of `rounds` runs, in milliseconds.
+template <class Body>
+double shortest(int rounds, Body&& body) {
+    double best = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < rounds; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        body();
+        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+        best = std::min(best, took.count());
+    }
+    return best;
+}
+
+void benchSplines() {
+    std::mt19937 random(1);
+    const PatchSpline spline = testing::randomSpline(3, random);
+    constexpr size_t kPixels = 768 * 512, kBatch = 256;
+    std::uniform_real_distribution<float> unit(0, 1);
+    std::vector<float> x(kPixels), y(kPixels);
+    for (size_t i = 0; i < kPixels; ++i) {
+        const float s = unit(random), t = unit(random) * (1 - s);
+        x[i] = s + .5f * t;
+        y[i] = float(kDomainHeight) * t;
+    }
+    float out[3][kBatch];
+    float* const outs[] = {out[0], out[1], out[2]};
+    const auto run = [&](auto&& evaluate) {
+        return shortest(5, [&] {
+            for (size_t i = 0; i < kPixels; i += kBatch)
+                evaluate(spline, 3, x.data() + i, y.data() + i, kBatch, outs);
+        });
+    };
+    const double best = run(evaluateSplines), plain = run(evaluateSplinesScalar);
+    std::printf("splines, 16 terms x 3 channels, 768 x 512 points, one thread:\n");
+    std::printf("  %-8s %8.2f ms  %6.2f ns a point\n", splineInstructionSet(), best, best * 1e6 / kPixels);
+    std::printf("  %-8s %8.2f ms  %6.2f ns a point\n", "scalar", plain, plain * 1e6 / kPixels);
+}
+
+void benchRenderers() {
+    const PatchMesh curved = testing::curvedMesh(768, 512, 39, 26, 7);
+    PatchMesh straight = testing::gridMesh(768, 512, 39, 26);
+    straight.forEachPatch([&](PatchId p) { straight.setSpline(p, curved.spline(p)); });
+    std::printf("768 x 512 pixels, %zu patches, frames a second (milliseconds):\n", curved.patchCount());
+    const auto report = [](const char* what, double ms) {
+        std::printf("  %-44s %8.1f  (%.2f)\n", what, 1000 / ms, ms);
+    };
+    const View view = wholePicture(curved, {1, 1});
+    report("reference, curved", shortest(2, [&] { (void)rasterizeReference(curved, view); }));
+    for (const int threads : {1, 2})
+        withThreads(threads, [&] {
+            std::printf(" %d thread%s\n", threads, threads > 1 ? "s" : "");
+            report("fast, curved", shortest(40, [&] { (void)rasterize(curved, view); }));
+            report("fast, straight", shortest(40, [&] { (void)rasterize(straight, view); }));
+            report("fast, curved, owners alone", shortest(20, [&] { (void)locatePixels(curved, view); }));
+            report("fast, curved, 4 samples", shortest(5, [&] { (void)rasterize(curved, view, {4}); }));
+            View zoomed = view;
+            zoomed.scale = {16, 16};
+            zoomed.origin = {300.3, 200.7};
+            report("fast, curved, x16 zoom into 48 x 32 px",
+                   shortest(20, [&] { (void)rasterize(curved, zoomed); }));
+        });
+}
+
+}  // namespace
+}  // namespace tessera
+
+int main() {
+    tessera::benchSplines();
+    tessera::benchRenderers();
+}
