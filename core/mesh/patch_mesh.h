@@ -59,6 +59,8 @@ class PatchMesh {
     const PatchSpline& spline(PatchId p) const { return mSplines[p.index]; }
     const std::vector<SmoothJoin>& smoothJoins() const { return mSmoothJoins; }
 
+    // Another connectivity over the same elements (after a flip, say). The caller keeps the geometry consistent.
+    void setConnectivity(HalfedgeMesh connectivity) { mConnectivity = std::move(connectivity); }
     void setPosition(VertexId v, LatticePoint p) { mPositions.edit(v.index) = p; }
     void setCurve(EdgeId e, const EdgeCurve& curve) { mCurves.edit(e.index) = curve; }
     void setInterior(PatchId p, LatticePoint point) { mInteriors.edit(p.index) = point; }

@@ -1,11 +1,18 @@
 // The driver of section 4: photograph in, patches out.
 #pragma once
 
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/mesh/patch_mesh.h"
+#include "core/vectorize/features.h"
+#include "core/vectorize/initial_mesh.h"
 #include "core/vectorize/settings.h"
+#include "core/vectorize/simplify.h"
 
 namespace tessera {
 
@@ -14,9 +21,26 @@ struct VectorImage {
     VectorizeReport report;
 };
 
+// A stage of the driver: its name, about which part of the time it takes, and the variants that exist.
+struct StageVariants {
+    std::string stage;
+    double weight;
+    std::vector<std::string> variants;
+};
+const std::vector<StageVariants>& stageTable();
+
+// Looks at what each stage hands to the next (the pictures of Fig. 2 are made from it); any of them may be empty.
+struct StageObserver {
+    std::function<void(const std::vector<PixelChain>&)> features;
+    std::function<void(const ChannelMeshes&)> initialMesh;
+    std::function<void(const BaseDomain&)> baseDomain;
+    std::function<void(const PatchMesh&)> curves;
+};
+
 // Vectorizes a picture of at least 1 x 1 pixels. The same bytes for the same image and settings, whatever the number
 // of threads. Fails with Usage for settings out of range or variants that do not exist, and with Stopped within 50 ms
 // of a request to stop.
-Result<VectorImage> vectorize(const Image& image, const VectorizeSettings& settings, Progress& progress);
+Result<VectorImage> vectorize(const Image& image, const VectorizeSettings& settings, Progress& progress,
+                              const StageObserver& observe = {});
 
 }  // namespace tessera

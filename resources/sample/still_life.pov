@@ -7,13 +7,13 @@
 
 global_settings {
   assumed_gamma 1.0
-  max_trace_level 8
+  max_trace_level 5
   radiosity {
-    pretrace_start 0.08 pretrace_end #if (Fast) 0.02 #else 0.008 #end
-    count #if (Fast) 40 #else 110 #end
-    nearest_count 8 error_bound #if (Fast) 1.2 #else 0.7 #end
+    pretrace_start 0.08 pretrace_end 0.02
+    count #if (Fast) 40 #else 60 #end
+    nearest_count 6 error_bound #if (Fast) 1.2 #else 1.1 #end
     recursion_limit 2 low_error_factor 0.6 gray_threshold 0.15
-    minimum_reuse 0.012 brightness 1.0
+    minimum_reuse 0.02 brightness 1.0
   }
 }
 #default { finish { ambient 0 diffuse 0.75 } }
@@ -28,16 +28,16 @@ camera {
     aperture 2.1
     focal_point <0, 4, -7>
     #if (Fast) blur_samples 4, 12 confidence 0.8 variance 1/200
-    #else blur_samples 16, 60 confidence 0.93 variance 1/1200 #end
+    #else blur_samples 8, 26 confidence 0.9 variance 1/400 #end
   #end
 }
 
 // ------------------------------------------------------------------ light
 light_source {
-  <-78, 66, -42> srgb <1.00, 0.955, 0.90>*1.75
-  area_light <24, 0, -40>, <0, 48, 0>, 5, 5
-  adaptive 1 jitter
-  fade_distance 110 fade_power 2
+  <-78, 66, -42> srgb <1.00, 0.965, 0.92>*1.80
+  area_light <28, 0, -46>, <0, 54, 0>, 3, 3
+  adaptive 0 jitter
+  fade_distance 104 fade_power 2
 }
 // the window itself: seen only in reflections
 #declare Pane = box { <-1,-1,0>, <1,1,0.01>
@@ -54,15 +54,21 @@ union {
   translate <-92, 60, -48>
   no_image no_shadow no_radiosity
 }
+// a pale card on the other side, again only for the reflections
+box { <-26, -22, 0>, <26, 22, 0.1>
+  pigment { srgb 1 } finish { ambient 0 diffuse 0 emission 0.42 }
+  rotate y*52 translate <78, 34, -62>
+  no_image no_shadow no_radiosity
+}
 // room seen in reflections, and the soft fill
 sky_sphere {
   pigment {
     function { 0.5 - 0.42*x + 0.16*y - 0.10*z }
     color_map {
-      [0.00 srgb <0.20, 0.175, 0.16>]
-      [0.45 srgb <0.36, 0.335, 0.315>]
-      [0.75 srgb <0.60, 0.585, 0.575>]
-      [1.00 srgb <0.74, 0.74, 0.745>]
+      [0.00 srgb <0.16, 0.145, 0.135>]
+      [0.45 srgb <0.30, 0.285, 0.275>]
+      [0.75 srgb <0.53, 0.525, 0.525>]
+      [1.00 srgb <0.70, 0.71, 0.73>]
     }
   }
 }
@@ -72,8 +78,8 @@ plane { -z, -72
   pigment {
     function { f_noise3d(x*0.035, y*0.035, 3)*0.65 + f_noise3d(x*0.13, y*0.13, 7)*0.35 }
     color_map {
-      [0.25 srgb <0.60, 0.585, 0.55>]
-      [0.75 srgb <0.665, 0.65, 0.61>]
+      [0.25 srgb <0.545, 0.53, 0.50>]
+      [0.75 srgb <0.60, 0.585, 0.555>]
     }
   }
 }
@@ -97,7 +103,7 @@ plane { -z, -72
       }
       translate Off
     }
-    normal { function { 0.6*FFibre(x,y,z) + 0.4*FPore(x,y,z) } 0.09 translate Off }
+    normal { function { 0.6*FFibre(x,y,z) + 0.4*FPore(x,y,z) + 0.010*f_noise3d(x*60,y*60,z*60) } 0.09 translate Off }
     finish { diffuse 0.74 specular 0.10 roughness 0.05
              reflection { 0.004, 0.20 fresnel on } conserve_energy }
   }
@@ -114,22 +120,25 @@ plane { -z, -72
   }
 #end
 #declare RS = seed(41);
-#local Z = -60;
-#while (Z < 28)
-  #local W = 11 + 3*rand(RS);
-  #local Off = <rand(RS)*80, 3 + rand(RS)*6, (rand(RS)-0.5)*10>;
-  union {
-    box { <-130, -3, 0.15>, <130, 0, W-0.2> }
-    box { <-130, -3, 0.03>, <130, -0.12, W-0.08> }
-    cylinder { <-130, -0.12, 0.15>, <130, -0.12, 0.15>, 0.12 }
-    cylinder { <-130, -0.12, W-0.2>, <130, -0.12, W-0.2>, 0.12 }
-    WoodTex(0.90 + 0.18*rand(RS), Off)
-    interior { ior 1.5 }
-    translate <0, 0, Z>
-  }
-  #local Z = Z + W;
-#end
-box { <-130, -4, -60>, <130, -1.2, Z-0.3> pigment { srgb <0.05,0.03,0.02> } }
+union {
+  #local Z = -110;
+  #while (Z < 110)
+    #local W = 10.5 + 4*rand(RS);
+    #local Off = <rand(RS)*80, 3 + rand(RS)*6, (rand(RS)-0.5)*14>;
+    union {
+      box { <-32, -3, 0.12>, <70, 0, W-0.12> }
+      box { <-32, -3, 0.02>, <70, -0.1, W-0.02> }
+      cylinder { <-32, -0.1, 0.12>, <70, -0.1, 0.12>, 0.1 }
+      cylinder { <-32, -0.1, W-0.12>, <70, -0.1, W-0.12>, 0.1 }
+      WoodTex(0.88 + 0.24*rand(RS), Off)
+      interior { ior 1.5 }
+      translate <0, 0, Z>
+    }
+    #local Z = Z + W;
+  #end
+  box { <-31.5, -4, -110>, <70, -1.2, 110> pigment { srgb <0.05,0.03,0.02> } }
+  rotate y*94
+}
 
 // ------------------------------------------------------------------ meshes of revolution
 // Spl(t) = <radius, height> for t = 0 (outer bottom) .. 1 (top);
@@ -199,9 +208,9 @@ box { <-130, -4, -60>, <130, -1.2, Z-0.3> pigment { srgb <0.05,0.03,0.02> } }
 }
 #declare AppleV = function(x,y,z,s,rd,bx,bz) {
   0.46 + rd + 0.26*(x*bx + z*bz) + 0.10*y
-  + 0.55*(f_noise3d(7*x/(sqrt(x*x+z*z)+0.03)+s, 0.9*y+s, 7*z/(sqrt(x*x+z*z)+0.03)) - 0.5)
-  + 0.35*(f_noise3d(17*x/(sqrt(x*x+z*z)+0.03)+s, 1.6*y, 17*z/(sqrt(x*x+z*z)+0.03)+s) - 0.5)
-  + 0.45*(f_noise3d(1.6*x+s, 1.6*y, 1.6*z+s) - 0.5)
+  + 0.40*(f_noise3d(7*x/(sqrt(x*x+z*z)+0.03)+s, 0.9*y+s, 7*z/(sqrt(x*x+z*z)+0.03)) - 0.5)
+  + 0.30*(f_noise3d(19*x/(sqrt(x*x+z*z)+0.03)+s, 1.6*y, 19*z/(sqrt(x*x+z*z)+0.03)+s) - 0.5)
+  + 0.62*(f_noise3d(1.5*x+s, 1.5*y, 1.5*z+s) - 0.5) + 0.16*(f_noise3d(7*x+s, 7*y, 7*z) - 0.5)
   - 0.85*exp(-(x*x+z*z)/0.05)
 }
 #macro AppleTex(S, Red, BX, BZ)
@@ -222,15 +231,15 @@ box { <-130, -4, -60>, <130, -1.2, Z-0.3> pigment { srgb <0.05,0.03,0.02> } }
     pigment {
       crackle form <1,0,0> metric 2
       color_map {
-        [0.00 srgb <0.90, 0.76, 0.50> transmit 0.25]
-        [0.07 srgb <0.90, 0.76, 0.50> transmit 0.45]
+        [0.00 srgb <0.90, 0.76, 0.50> transmit 0.35]
+        [0.06 srgb <0.90, 0.76, 0.50> transmit 0.60]
         [0.12 srgb <0.90, 0.76, 0.50> transmit 1]
       }
-      scale 0.115 translate S
+      scale 0.088 translate S
     }
-    normal { bumps 0.035 scale 0.09 }
+    normal { average normal_map { [1 bumps 0.07 scale 0.09] [1 bumps 0.26 scale 0.011] } }
     finish { diffuse 0.75 specular 0.16 roughness 0.025
-             reflection { 0.006, 0.28 fresnel on } conserve_energy }
+             reflection { 0.004, 0.22 fresnel on } conserve_energy }
   }
 #end
 #macro Stem(Len, Lean, Base)
@@ -503,24 +512,20 @@ box { <-130, -4, -60>, <130, -1.2, Z-0.3> pigment { srgb <0.05,0.03,0.02> } }
   0.53, <11.2, 8.55, 0>  0.56, <10.8, 7.9, 0>  0.65, <9.8, 5.8, 0>   0.76, <8.2, 3.7, 0>
   0.87, <5.6, 1.8, 0>    0.95, <2.6, 1.0, 0>   1.00, <0.0, 0.95, 0>
 }
+#declare FHam = function { pattern { crackle form <1,0,0> } }
 #declare Bowl = object {
   Rev(BowlSpl, 130, 150, 0, 0.006, 5, 0)
   texture {
     pigment {
       function { 0.6*f_noise3d(x*0.35,y*0.35,z*0.35) + 0.4*f_noise3d(x*1.8,y*1.8,z*1.8) }
       color_map {
-        [0.25 srgb <0.56, 0.40, 0.21>]
-        [0.75 srgb <0.72, 0.55, 0.30>]
+        [0.25 srgb <0.78, 0.60, 0.36>]
+        [0.75 srgb <0.88, 0.72, 0.46>]
       }
     }
-    normal {
-      average normal_map {
-        [1.0 crackle 0.55 form <1,0,0> scale 0.95 slope_map { [0 <0,0>] [0.6 <0.55,1>] [1 <1,0.2>] } ]
-        [0.5 bumps 0.12 scale 0.25]
-      }
-    }
-    finish { diffuse 0.28 specular 0.35 roughness 0.03 metallic
-             reflection { 0.52 metallic } brilliance 1.6 }
+    normal { function { pow(FHam(x*0.62,y*0.62,z*0.62),2)*1.9 + 0.03*f_noise3d(x*4,y*4,z*4) } 0.55 }
+    finish { diffuse 0.20 specular 0.5 roughness 0.03 metallic
+             reflection { 0.78 metallic } brilliance 1.5 }
   }
 }
 
@@ -528,13 +533,13 @@ box { <-130, -4, -60>, <130, -1.2, Z-0.3> pigment { srgb <0.05,0.03,0.02> } }
 // places where something rests: x, z, radius of the flat spot
 #declare NFlat = 6;
 #declare Flat = array[NFlat] {
-  <8, 4.0, 5.2>, <-6.3, -10.0, 2.4>, <13.8, -9.8, 6.4>, <-0.2, -7.0, 2.4>, <2.6, -12.6, 2.2>, <24.6, 9.5, 3.4>
+  <8, 4.0, 5.2>, <-6.3, -10.0, 2.4>, <13.8, -9.8, 6.4>, <-0.2, -7.0, 2.4>, <2.6, -13.6, 3.6>, <24.6, 9.5, 3.4>
 }
 // folds: start x, z, direction (deg), length; width, height, lean, curvature
 #declare NFold = 12;
 #declare Fold = array[NFold][8] {
-  {  3.5,-13.5, 252, 20,  1.5, 2.3,  0.9,  0.010 },
-  {  6.5,-16.0, 268, 17,  1.2, 1.6, -0.7, -0.012 },
+  {  3.5,-17.5, 256, 20,  1.5, 2.3,  0.9,  0.010 },
+  {  7.5,-17.0, 274, 17,  1.2, 1.7, -0.7, -0.012 },
   { -2.0,-14.0, 236, 17,  1.6, 1.9,  0.8, -0.014 },
   { 17.0,-15.0, 300, 18,  1.6, 2.2,  0.8,  0.012 },
   { 11.0,-18.5, 280, 14,  1.0, 1.2,  0.5,  0.010 },
@@ -576,14 +581,14 @@ box { <-130, -4, -60>, <130, -1.2, Z-0.3> pigment { srgb <0.05,0.03,0.02> } }
         #local Bs = B/Wd; 
         #local G = (Bs > 0 ? exp(-Bs*Bs*1.9) : exp(-Bs*Bs*0.7));
         #local H = H + Amp*G*W;
-        #local S = S + Pp*Fold[K][6]*Amp*G*W*0.62;
+        #local S = S + Pp*Fold[K][6]*Amp*G*W*0.40;
       #end
     #end
     #local K = K + 1;
   #end
   (Pt + S + y*H)
 #end
-#local St = (Fast ? 0.55 : 0.27);
+#local St = (Fast ? 0.40 : 0.26);
 #local NU = int((CU1-CU0)/St); #local NV = int((CV1-CV0)/St);
 #local CP = array[NU+3][NV+3];
 #local I = 0;
@@ -665,21 +670,40 @@ mesh2 {
             [1.00 srgb <0.39, 0.45, 0.56>] } ]
       }
     }
-    finish { diffuse 0.78 brilliance 0.9 }
+    finish { diffuse 0.78, 0.30 }
   }
+}
+
+// the fringe along the short side
+#declare RF = seed(5);
+union {
+  #local V = CV0 + 0.2;
+  #while (V < CV1)
+    #local Pa = ClothPos(CU0, V);
+    #local Pb = ClothPos(CU0 + 0.6, V);
+    #local Dv = vnormalize((Pa - Pb)*<1,0,1>);
+    #local Dw = vrotate(Dv, y*(rand(RF)*50 - 25));
+    #local Dx = vrotate(Dw, y*(rand(RF)*70 - 35));
+    #local L = 0.55 + 0.25*rand(RF);
+    sphere_sweep { b_spline 6,
+      Pa - Dv*0.5, 0.085, Pa, 0.085, Pa*<1,0.6,1> + y*0.06 + Dv*L, 0.075, Pa*<1,0.2,1> + y*0.09 + Dv*L + Dw*L, 0.065
+      Pa*<1,0.05,1> + y*0.08 + Dv*L + Dw*L + Dx*L, 0.05, Pa*<1,0,1> + y*0.07 + Dv*L + Dw*L + Dx*L*2, 0.03 }
+    #local V = V + 0.26 + 0.1*rand(RF);
+  #end
+  pigment { bozo color_map { [0.3 srgb <0.72,0.69,0.62>] [0.7 srgb <0.84,0.81,0.755>] } scale 0.3 }
 }
 
 // ------------------------------------------------------------------ half an orange
 #declare FAng = function(x,z) { atan2(z, x)/(2*pi)*10 + 10.3 + 0.25*(f_noise3d(x*1.3, 1, z*1.3) - 0.5) }
 #declare FSeg = function(x,z) { abs(mod(FAng(x,z), 1) - 0.5) }    // 0.5 on a membrane
 #declare FJuice = function(x,z) {    // little sacs, stretched towards the rind
-  f_noise3d(26*atan2(z,x), 5*sqrt(x*x+z*z), 3)*0.55 + f_noise3d(x*9, 2, z*9)*0.45
+  f_noise3d(22*atan2(z,x), 4*sqrt(x*x+z*z), 3)*0.55 + f_noise3d(x*9, 2, z*9)*0.45
 }
 #declare FCut = function(x,z) {      // 0 flesh .. 1 membrane or pith .. 2 rind
   select(sqrt(x*x+z*z) - 0.965,
-    max(SStep(0.80, 0.865, sqrt(x*x+z*z) + 0.05*(0.5-FSeg(x,z))*0 + 0.03*SStep(0.25,0.5,FSeg(x,z))),
-      max(1 - SStep(0.06, 0.11, sqrt(x*x+z*z) + 0.05*f_noise3d(x*9,4,z*9)),
-          SStep(0.045, 0.012, (0.5-FSeg(x,z))*sqrt(x*x+z*z)*0.63))),
+    max(SStep(0.845, 0.90, sqrt(x*x+z*z) + 0.055*SStep(0.22,0.5,FSeg(x,z)) + 0.03*(f_noise3d(x*4,8,z*4)-0.5)),
+      max(1 - SStep(0.04, 0.09, sqrt(x*x+z*z) + 0.05*f_noise3d(x*9,4,z*9)),
+          0.62*SStep(0.030, 0.006, (0.5-FSeg(x,z))*sqrt(x*x+z*z)*0.63))),
     2)
 }
 #declare HalfOrange = union {
@@ -700,10 +724,10 @@ mesh2 {
         pigment_map {
           [0.00 function { FJuice(x,z) }
             color_map {
-              [0.25 srgb <0.83, 0.38, 0.055>]
-              [0.45 srgb <0.92, 0.50, 0.10>]
-              [0.62 srgb <0.95, 0.60, 0.18>]
-              [0.80 srgb <0.97, 0.74, 0.36>] } ]
+              [0.22 srgb <0.80, 0.36, 0.05>]
+              [0.42 srgb <0.88, 0.46, 0.085>]
+              [0.62 srgb <0.91, 0.54, 0.13>]
+              [0.85 srgb <0.94, 0.66, 0.26>] } ]
           [0.50 bozo color_map { [0.3 srgb <0.90, 0.78, 0.55>] [0.7 srgb <0.94, 0.85, 0.66>] } scale 0.1]
           [0.90 srgb <0.93, 0.76, 0.45>]
           [1.00 srgb <0.90, 0.48, 0.08>]
@@ -717,33 +741,45 @@ mesh2 {
 }
 
 // ------------------------------------------------------------------ a sprig for the vase
+#macro LeafPos(A, B, L, Curl)
+  #local Wd = 0.29*pow(sin(pi*pow(min(0.9999,max(0.0001,A)),0.8)), 0.85)*(1 - 0.2*A);
+  (<B*Wd, 0.35*abs(B)*Wd + Curl*(A*A - 0.25*A) + 0.03*sin(A*8 + Curl*20), A>*L)
+#end
 #macro Leaf(L, Curl, Hue)   // along +z, face up
-  #local NL = 8;
+  #local NL = 12;
+  #local LP = array[NL+1][7];
+  #local LN = array[NL+1][7];
+  #local I = 0;
+  #while (I <= NL)
+    #local J = 0;
+    #while (J < 7)
+      #local A = I/NL; #local B = (J-3)/3;
+      #local LP[I][J] = LeafPos(A, B, L, Curl);
+      #local Am = min(0.97, max(0.03, A)); #local Bm = B*0.9 + 0.02;
+      #local LN[I][J] = vnormalize(vcross(LeafPos(Am+0.02,Bm,L,Curl) - LeafPos(Am-0.02,Bm,L,Curl),
+                                          LeafPos(Am,Bm+0.06,L,Curl) - LeafPos(Am,Bm-0.06,L,Curl)));
+      #local J = J + 1;
+    #end
+    #local I = I + 1;
+  #end
   mesh {
     #local I = 0;
     #while (I < NL)
-      #local J = -2;
-      #while (J < 2)
-        #local C = array[4];
-        #local K = 0;
-        #while (K < 4)
-          #local A = (I + (K = 1 | K = 2))/NL;
-          #local B = (J + (K >= 2))/2;
-          #local Wd = 0.30*pow(sin(pi*pow(A,0.8)), 0.8)*(1 - 0.25*A);
-          #local C[K] = <B*Wd, 0.10*B*B*Wd*4 + Curl*(A*A - 0.25*A) + 0.02*sin(A*9), A>*L;
-          #local K = K + 1;
-        #end
-        triangle { C[0], C[1], C[2] } triangle { C[0], C[2], C[3] }
+      #local J = 0;
+      #while (J < 6)
+        smooth_triangle { LP[I][J],LN[I][J], LP[I+1][J],LN[I+1][J], LP[I+1][J+1],LN[I+1][J+1] }
+        smooth_triangle { LP[I][J],LN[I][J], LP[I+1][J+1],LN[I+1][J+1], LP[I][J+1],LN[I][J+1] }
         #local J = J + 1;
       #end
       #local I = I + 1;
     #end
     texture {
       pigment {
-        function { min(0.999, max(0, Hue + 0.5*(f_noise3d(x*1.6,y*1.6,z*1.6)-0.5) - 0.3*exp(-abs(x)*22))) }
-        color_map { [0.0 srgb <0.46, 0.50, 0.34>] [0.4 srgb <0.25, 0.34, 0.20>] [1.0 srgb <0.15, 0.24, 0.14>] }
+        function { min(0.999, max(0, Hue + 0.5*(f_noise3d(x*1.6,y*1.6,z*1.6)-0.5) - 0.35*exp(-abs(x)*26)
+           - 0.10*SStep(0.75,1,abs(sin((z - abs(x)*0.7)*9))))) }
+        color_map { [0.0 srgb <0.53, 0.57, 0.40>] [0.4 srgb <0.36, 0.43, 0.29>] [1.0 srgb <0.24, 0.32, 0.215>] }
       }
-      finish { diffuse 0.7 specular 0.18 roughness 0.05 }
+      finish { diffuse 0.62, 0.30 specular 0.16 roughness 0.06 }
     }
   }
 #end
@@ -796,7 +832,7 @@ mesh2 {
     material { GlassMat }
   }
   torus { 3.67, 0.075 translate y*10.4 material { GlassMat } }
-  cone { y*1.11, 2.64, y*6.6, 3.25
+  cone { y*1.05, 2.70, y*6.6, 3.25
     texture { pigment { rgbt <1,1,1,1> } finish { diffuse 0 specular 0.3 roughness 0.005 reflection { 0, 1 fresnel on } conserve_energy } }
     interior { ior 1.33 caustics 0.5 }
   }
@@ -821,3 +857,14 @@ object { Pear(3.3, 0.36, 0.9, -0.3, -0.06, -0.7) scale 3.25 rotate <0, 60, 0> tr
 object { HalfOrange scale 3.7 rotate y*35 rotate x*-58 rotate y*-12 translate <2.3, 2.9, -13.4> }
 GrapePile(13.8, -9.8, 7.2, 4.6, -14, 46, 0.2, 77)
 object { Tumbler translate <24.6, 0.2, 9.5> }
+
+// the grapes' stalk, a few strays and a fallen leaf
+sphere_sweep { b_spline 8,
+  <14.5, 3.2, -9.2>, 0.20, <15.8, 4.8, -9.4>, 0.19, <17.4, 5.9, -9.5>, 0.17, <19.2, 6.5, -9.3>, 0.16
+  <20.9, 6.5, -9.0>, 0.18, <22.2, 6.1, -8.9>, 0.24, <23.0, 5.8, -8.9>, 0.28, <23.6, 5.6, -8.9>, 0.2
+  pigment { bozo color_map { [0.3 srgb <0.36,0.34,0.16>] [0.7 srgb <0.46,0.35,0.19>] } scale 0.5 }
+  normal { bumps 0.4 scale 0.15 }
+}
+Grape(<-17.2, 1.0, -17.5>, 1.02, 3.3, 0.35)
+Grape(<-14.6, 0.95, -18.9>, 0.97, 8.1, 0.6)
+object { Leaf(5.6, -0.16, 0.35) rotate <4, 62, 8> translate <-25.5, 0.35, -15.0> }

@@ -1,0 +1,60 @@
+// Curvilinear features at pixel resolution (paper section 4.1): Canny's edges, thinned, linked, free of T-junctions.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/vectorize/settings.h"
+
+namespace tessera {
+
+// Detected pixels in order, each an 8-neighbour of the one before and of no other pixel of any chain. None lies on the
+// outermost pixels of the picture.
+struct PixelChain {
+    std::vector<glm::ivec2> pixels;
+    // For each pixel: whether the true discontinuity lies half a pixel off on the positive side of the chain's
+    // direction d, that of the normal (-d.y, d.x), rather than on the negative one.
+    std::vector<uint8_t> onPositiveSide;
+    bool closed = false;
+
+    bool operator==(const PixelChain&) const = default;
+};
+
+// Gradient of all channels at once (Di Zenzo 1986): magnitude is the square root of the larger eigenvalue of the sum
+// of the channels' structure tensors, direction its eigenvector. Row by row, one value a pixel.
+struct GradientField {
+    int width = 0;
+    int height = 0;
+    std::vector<float> magnitude;
+    std::vector<glm::vec2> direction;  // of unit length; its sign means nothing
+
+    float at(int x, int y) const { return magnitude[size_t(y) * size_t(width) + size_t(x)]; }
+};
+GradientField diZenzoGradient(const Image& image, double sigmaPx);
+
+// One byte a pixel, 1 on edges: local maxima of the magnitude along its direction above `high`, and those above `low`
+// that are connected to them (Canny 1986). Thresholds are absolute.
+std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, double high);
+
+// Thins a binary picture to lines of one pixel (Zhang and Suen 1984), then removes the corner pixels of staircases.
+void thin(std::vector<uint8_t>& edges, int width, int height);
+
+// Removes, at each pixel with more than two 8-neighbours, the weakest of them until two are left.
+void removeJunctions(std::vector<uint8_t>& edges, const GradientField& gradient);
+
+// Chains of at least minPixels pixels; open ones first, each set in raster order of their first pixels.
+std::vector<PixelChain> linkChains(const std::vector<uint8_t>& edges, int width, int height, int minPixels);
+
+// Sets onPositiveSide by comparing the colour differences one pixel off on either side, averaged over nine pixels
+// along the chain.
+void chooseSides(PixelChain& chain, const Image& image);
+
+// Stage "features", variant "canny": all of the above. Variant "none" finds nothing.
+Result<std::vector<PixelChain>> detectFeatures(const Image& image, const VectorizeSettings& settings,
+                                               StageReport& report, Progress& progress);
+
+}  // namespace tessera
