@@ -195,12 +195,16 @@ void PatchInverse::solve(float* x, float* y, size_t count, float* v, float* w) c
 }
 
 void PatchInverse::repair(float x, float y, float& v, float& w) const {
-    const glm::dvec2 point = mCentre + glm::dvec2(x, y) / mInverseSize;
-    // A little outside: clamped parameters, where their point is near enough.
+    // Mostly converged, and outside by rounding: then the clamped parameters are near enough.
     Barycentric b = glm::max(Barycentric(1 - double(v) - double(w), v, w), Barycentric(0));
     b /= b.x + b.y + b.z;
-    if (!(glm::distance(evaluate(mPatch, b), point) <= mTolerance))
-        b = nearestParameters(mPatch, point, mTolerance);
+    if (mMap.steps > 0) {
+        const glm::dvec2 point = mCentre + glm::dvec2(x, y) / mInverseSize;
+        constexpr double kSingle = 1e-6;  // what single precision leaves, of the patch's size
+        const double tolerance = std::max(mTolerance, kSingle / mInverseSize);
+        if (!(glm::distance(evaluate(mPatch, b), point) <= tolerance))
+            b = nearestParameters(mPatch, point, tolerance);
+    }
     v = float(b.y);
     w = float(b.z);
 }

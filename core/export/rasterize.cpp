@@ -61,7 +61,8 @@ void processTile(const PatchMesh& mesh, const ScanConversion& scan, const Tile& 
                  Emit&& emit) {
     const PixelGrid& grid = scan.grid();
     std::vector<PixelRun> runs;
-    const double tolerance = .1 / std::max(grid.scale.x, grid.scale.y);
+    // Sides are drawn to a thousandth of an output pixel.
+    const double tolerance = .002 / std::max(grid.scale.x, grid.scale.y);
     for (const uint32_t index : tile.patches) {
         batch.patch = scan.patches()[index];
         const PixelRect& box = scan.bounds(index);
