@@ -69,7 +69,7 @@ std::vector<Barycentric> constraintPoints(int n, unsigned pairedSides) {
         }
     for (int s = 0; s < 3; ++s) {
         if (!(pairedSides & (1U << s))) continue;
-        for (int k = 0; k <= n; ++k)
+        for (int k = 1; k < n; ++k)
             for (const double inward : {kPairOffset / n, -kPairOffset / n}) {
                 // Side s joins corners s and s + 1; moving in along the normal shares the gain between them.
                 const double t = double(k) / n;

@@ -66,6 +66,7 @@ class Simplifier {
     bool accumulateQuadrics(Progress& progress);
     bool queueAll(Progress& progress);
     void queue(EdgeId e);
+    void refresh(EdgeId e);
     bool allowed(HalfedgeId h) const;
     double cost(HalfedgeId h) const;
     int copyPairs(HalfedgeId h, CopyPair pairs[2]) const;
@@ -99,8 +100,14 @@ class Simplifier {
     std::vector<AbsorbedLists::List> mLists;                // by edge
     std::vector<std::array<LatticePoint, 2>> mInner;        // by part, in the direction of the chain
     std::vector<Candidate> mHeap;
+    bool mHeapReady = false;          // while false, candidates are only collected
     std::vector<uint32_t> mStamps;    // by edge: older candidates are void
     std::vector<uint8_t> mFailures;   // by edge
+    // By edge: whether it has a valid candidate, and whether that one's cost is out of date. Quadrics only accumulate,
+    // so that an outdated cost is too low, and it is early enough to mend it when it comes to the top.
+    enum class Queued : uint8_t { No, Yes, Outdated };
+    std::vector<Queued> mQueued;
+    std::vector<EdgeId> mMoved;  // scratch of collapse()
     size_t mCollapses = 0, mRejected = 0, mRefitsRejected = 0;
 };
 
@@ -155,8 +162,18 @@ double Simplifier::cost(HalfedgeId h) const {
     return sum / count;
 }
 
+void Simplifier::refresh(EdgeId e) {
+    mFailures[e.index] = 0;
+    if (mQueued[e.index] == Queued::No)
+        queue(e);
+    else
+        mQueued[e.index] = Queued::Outdated;
+}
+
+// Makes the candidate of an edge anew; the older one is void.
 void Simplifier::queue(EdgeId e) {
     ++mStamps[e.index];
+    mQueued[e.index] = Queued::No;
     const uint8_t failures = mFailures[e.index];
     if (failures >= kMaxFailures) return;
     const HalfedgeId h = HalfedgeMesh::halfedge(e), t = HalfedgeMesh::twin(h);
@@ -175,17 +192,21 @@ void Simplifier::queue(EdgeId e) {
     // The penalty: each failure quadruples the error, and lifts it off zero.
     constexpr double kLeastPenalty = 1e-6;
     if (failures > 0) cheaper = (cheaper + kLeastPenalty) * std::pow(4.0, failures);
+    mQueued[e.index] = Queued::Yes;
     mHeap.push_back({float(cheaper), chosen.index, mStamps[e.index]});
+    if (mHeapReady) std::push_heap(mHeap.begin(), mHeap.end());
 }
 
 bool Simplifier::queueAll(Progress& progress) {
     mHeap.clear();
+    mHeapReady = false;
     for (uint32_t e = 0; e < m.mesh.edgeCapacity(); ++e) {
         if (e % 4096 == 0 && progress.stopRequested()) return false;
         mFailures[e] = 0;
         if (m.mesh.alive(EdgeId(e))) queue(EdgeId(e));
     }
     std::make_heap(mHeap.begin(), mHeap.end());
+    mHeapReady = true;
     return true;
 }
 
@@ -194,6 +215,7 @@ bool Simplifier::run(Progress& progress) {
     const size_t edges = m.mesh.edgeCapacity();
     mStamps.assign(edges, 0);
     mFailures.assign(edges, 0);
+    mQueued.assign(edges, Queued::No);
     mLists.resize(edges);
     for (uint32_t e = 0; e < edges; ++e) {
         const HalfedgeId h = HalfedgeMesh::halfedge(EdgeId(e));
@@ -219,12 +241,14 @@ bool Simplifier::run(Progress& progress) {
             const HalfedgeId h(top.halfedge);
             const EdgeId e = HalfedgeMesh::edge(h);
             if (!m.mesh.alive(e) || mStamps[e.index] != top.stamp) continue;
+            if (mQueued[e.index] == Queued::Outdated) {
+                queue(e);
+                continue;
+            }
             if (tryCollapse(h)) continue;
             ++mRejected;
             ++mFailures[e.index];
-            const size_t size = mHeap.size();
             queue(e);
-            if (mHeap.size() > size) std::push_heap(mHeap.begin(), mHeap.end());
         }
     }
     return true;
@@ -385,6 +409,12 @@ void Simplifier::collapse(HalfedgeId h, const std::optional<Refit>& curve, std::
         mInner[part] = curve->inner;
     }
 
+    std::vector<EdgeId>& moved = mMoved;
+    moved.clear();
+    m.mesh.forEachOutgoing(u, [&](HalfedgeId out) { moved.push_back(HalfedgeMesh::edge(out)); });
+    m.mesh.forEachOutgoing(v, [&](HalfedgeId out) {
+        if (HalfedgeMesh::edge(out) != HalfedgeMesh::edge(h)) refresh(HalfedgeMesh::edge(out));
+    });
     const auto done = m.mesh.collapse(h, keepOrigin);
     for (const HalfedgeMesh::Merge& merge : done.merges)
         if (merge.kept.valid()) m.copyOfCorner[merge.kept.index] = m.copyOfCorner[merge.replaced.index];
@@ -394,13 +424,11 @@ void Simplifier::collapse(HalfedgeId h, const std::optional<Refit>& curve, std::
         for (int k = 0; k < pairCount; ++k)
             if (m.copyOfCorner[out.index] == pairs[k].from) m.copyOfCorner[out.index] = pairs[k].to;
     });
-    m.mesh.forEachOutgoing(v, [&](HalfedgeId out) {
-        const EdgeId e = HalfedgeMesh::edge(out);
+    for (const EdgeId e : moved) {
+        if (!m.mesh.alive(e)) continue;
         mFailures[e.index] = 0;
-        const size_t size = mHeap.size();
         queue(e);
-        if (mHeap.size() > size) std::push_heap(mHeap.begin(), mHeap.end());
-    });
+    }
 }
 
 BaseDomain Simplifier::baseDomain() const {

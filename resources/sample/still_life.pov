@@ -7,8 +7,7 @@
 
 global_settings {
   assumed_gamma 1.0
-  max_trace_level 6
-  adc_bailout 0.03
+  max_trace_level 5
   radiosity {
     pretrace_start 0.08 pretrace_end 0.02
     count #if (Fast) 40 #else 60 #end
@@ -29,7 +28,7 @@ camera {
     aperture 2.1
     focal_point <0, 4, -7>
     #if (Fast) blur_samples 4, 12 confidence 0.8 variance 1/200
-    #else blur_samples 9, 30 confidence 0.9 variance 1/450 #end
+    #else blur_samples 8, 26 confidence 0.9 variance 1/400 #end
   #end
 }
 
@@ -238,7 +237,7 @@ union {
       }
       scale 0.088 translate S
     }
-    normal { bumps 0.035 scale 0.09 }
+    normal { average normal_map { [1 bumps 0.07 scale 0.09] [1 bumps 0.26 scale 0.011] } }
     finish { diffuse 0.75 specular 0.16 roughness 0.025
              reflection { 0.004, 0.22 fresnel on } conserve_energy }
   }
