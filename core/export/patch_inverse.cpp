@@ -21,9 +21,20 @@ constexpr float kLastStep = 1e-3f;
 // Powers of (v, w) in the order of mCoefficients.
 enum { kV, kW, kVV, kVW, kWW, kVVV, kVVW, kVWW, kWWW };
 
-// One Newton step for each point; v and w relative to the domain's centroid, `last` the squared length of the
-// step. Written so that the compiler makes vectors of it: no branch, no call. `x` and `y` and the others do
-// not overlap.
+// One coordinate of the map at (s, t), and its derivatives there.
+inline __attribute__((always_inline)) float value(const float* k, float s, float t) {
+    return s * (k[kV] + s * (k[kVV] + s * k[kVVV]) + t * (k[kVW] + s * k[kVVW] + t * k[kVWW])) +
+           t * (k[kW] + t * (k[kWW] + t * k[kWWW]));
+}
+inline __attribute__((always_inline)) float alongV(const float* k, float s, float t) {
+    return k[kV] + s * (2 * k[kVV] + s * (3 * k[kVVV]) + t * (2 * k[kVVW])) + t * (k[kVW] + t * k[kVWW]);
+}
+inline __attribute__((always_inline)) float alongW(const float* k, float s, float t) {
+    return k[kW] + t * (2 * k[kWW] + t * (3 * k[kWWW]) + s * (2 * k[kVWW])) + s * (k[kVW] + s * k[kVVW]);
+}
+
+// One Newton step for each point; `last` is the squared length of the step. Written so that the compiler
+// makes vectors of it: no branch, no call, no overlap of the arrays.
 inline __attribute__((always_inline)) void newtonStep(const float (*k)[9], const float* __restrict x,
                                                       const float* __restrict y, size_t count,
                                                       float* __restrict v, float* __restrict w,
@@ -32,22 +43,9 @@ inline __attribute__((always_inline)) void newtonStep(const float (*k)[9], const
     const float* b = k[1];
     for (size_t i = 0; i < count; ++i) {
         const float s = v[i], t = w[i];
-        const float ss = s * s, st = s * t, tt = t * t;
-        // Value and derivatives, by rows of powers.
-        const float fx =
-            x[i] - (s * (a[kV] + s * (a[kVV] + s * a[kVVV]) + t * (a[kVW] + s * a[kVVW] + t * a[kVWW])) +
-                    t * (a[kW] + t * (a[kWW] + t * a[kWWW])));
-        const float fy =
-            y[i] - (s * (b[kV] + s * (b[kVV] + s * b[kVVV]) + t * (b[kVW] + s * b[kVVW] + t * b[kVWW])) +
-                    t * (b[kW] + t * (b[kWW] + t * b[kWWW])));
-        const float xv =
-            a[kV] + 2 * (s * a[kVV] + st * a[kVVW]) + 3 * ss * a[kVVV] + t * a[kVW] + tt * a[kVWW];
-        const float yv =
-            b[kV] + 2 * (s * b[kVV] + st * b[kVVW]) + 3 * ss * b[kVVV] + t * b[kVW] + tt * b[kVWW];
-        const float xw =
-            a[kW] + 2 * (t * a[kWW] + st * a[kVWW]) + 3 * tt * a[kWWW] + s * a[kVW] + ss * a[kVVW];
-        const float yw =
-            b[kW] + 2 * (t * b[kWW] + st * b[kVWW]) + 3 * tt * b[kWWW] + s * b[kVW] + ss * b[kVVW];
+        const float fx = x[i] - value(a, s, t), fy = y[i] - value(b, s, t);
+        const float xv = alongV(a, s, t), yv = alongV(b, s, t);
+        const float xw = alongW(a, s, t), yw = alongW(b, s, t);
         const float inverse = 1 / (xv * yw - yv * xw);
         const float dv = (fx * yw - fy * xw) * inverse, dw = (xv * fy - yv * fx) * inverse;
         v[i] = s + dv;
@@ -56,32 +54,52 @@ inline __attribute__((always_inline)) void newtonStep(const float (*k)[9], const
     }
 }
 
-inline __attribute__((always_inline)) void newtonSteps(int steps, const float (*k)[9], const float* x,
-                                                       const float* y, size_t count, float* v, float* w,
-                                                       float* last) {
-    for (int step = 0; step < steps; ++step) newtonStep(k, x, y, count, v, w, last);
+// The affine guess, `steps` steps, and for each point whether its result can be trusted. Counts are whole
+// vectors.
+inline __attribute__((always_inline)) size_t solveInline(const PatchInverseMap& map,
+                                                         const float* __restrict x, const float* __restrict y,
+                                                         size_t count, float* __restrict v,
+                                                         float* __restrict w, int32_t* __restrict bad) {
+    float last[PatchInverse::kMaxBatch];
+    for (size_t i = 0; i < count; ++i) {
+        v[i] = map.start[0][0] + map.start[0][1] * x[i] + map.start[0][2] * y[i];
+        w[i] = map.start[1][0] + map.start[1][1] * x[i] + map.start[1][2] * y[i];
+        last[i] = 0;
+    }
+    for (int step = 0; step < map.steps; ++step) newtonStep(map.coefficients, x, y, count, v, w, last);
+    int32_t sum = 0;
+    for (size_t i = 0; i < count; ++i) {
+        v[i] += kThird;
+        w[i] += kThird;
+        // Not the negation: NaN counts as bad.
+        const int32_t good = int32_t(v[i] >= 0) & int32_t(w[i] >= 0) & int32_t(v[i] + w[i] <= 1) &
+                             int32_t(last[i] <= kLastStep * kLastStep);
+        bad[i] = good ^ 1;
+        sum += bad[i];
+    }
+    return size_t(sum);
 }
 
 // The same operations in the same order in both, hence the same bits (contraction is off).
-void runSteps(int steps, const float (*k)[9], const float* x, const float* y, size_t count, float* v,
-              float* w, float* last) {
-    newtonSteps(steps, k, x, y, count, v, w, last);
+size_t solvePlain(const PatchInverseMap& map, const float* x, const float* y, size_t count, float* v,
+                  float* w, int32_t* bad) {
+    return solveInline(map, x, y, count, v, w, bad);
 }
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void runStepsAvx2(int steps, const float (*k)[9], const float* x,
-                                                  const float* y, size_t count, float* v, float* w,
-                                                  float* last) {
-    newtonSteps(steps, k, x, y, count, v, w, last);
+__attribute__((target("avx2"))) size_t solveAvx2(const PatchInverseMap& map, const float* x, const float* y,
+                                                 size_t count, float* v, float* w, int32_t* bad) {
+    return solveInline(map, x, y, count, v, w, bad);
 }
 #endif
 
-using RunSteps = decltype(&runSteps);
-RunSteps chooseRunSteps() {
+size_t solveBest(const PatchInverseMap& map, const float* x, const float* y, size_t count, float* v, float* w,
+                 int32_t* bad) {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) return runStepsAvx2;
+    static const bool hasAvx2 = __builtin_cpu_supports("avx2");
+    if (hasAvx2) return solveAvx2(map, x, y, count, v, w, bad);
 #endif
-    return runSteps;
+    return solvePlain(map, x, y, count, v, w, bad);
 }
 
 }  // namespace
@@ -116,8 +134,8 @@ PatchInverse::PatchInverse(const LatticeTriangle& patch, double tolerance)
     shifted[kVWW] = cvww;
     shifted[kWWW] = cwww;
     for (size_t i = 0; i < 9; ++i) {
-        mCoefficients[0][i] = float(shifted[i].x);
-        mCoefficients[1][i] = float(shifted[i].y);
+        mMap.coefficients[0][i] = float(shifted[i].x);
+        mMap.coefficients[1][i] = float(shifted[i].y);
     }
 
     const glm::dvec2 ab = p[3] - p[0], ac = p[6] - p[0];
@@ -126,11 +144,11 @@ PatchInverse::PatchInverse(const LatticeTriangle& patch, double tolerance)
     const double start[2][3] = {{-cross(p[0], ac) * inverse - s, ac.y * inverse, -ac.x * inverse},
                                 {cross(p[0], ab) * inverse - s, -ab.y * inverse, ab.x * inverse}};
     for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 3; ++j) mStart[i][j] = float(start[i][j]);
+        for (int j = 0; j < 3; ++j) mMap.start[i][j] = float(start[i][j]);
     chooseSteps();
 }
 
-// As many steps as bring the guess near the truth at 15 points over the patch, and one more.
+// As many steps as bring the guess near the truth at 8 points over the patch, and one more.
 void PatchInverse::chooseSteps() {
     // Affine up to the rounding of control points to the lattice: the guess is the answer.
     bool affine = true;
@@ -142,58 +160,51 @@ void PatchInverse::chooseSteps() {
             const glm::dvec2 off = glm::abs(mPatch.p[size_t(controlIndex(i, j, k))] - even);
             affine = affine && std::max(off.x, off.y) <= 1.0 / kLatticePerPixel;
         }
-    mSteps = 0;
+    mMap.steps = 0;
     if (affine) return;
 
-    constexpr size_t kPoints = 15;
-    float x[kPoints], y[kPoints], v[kPoints], w[kPoints], trueV[kPoints], trueW[kPoints], last[kPoints];
-    size_t n = 0;
-    for (int j = 0; j <= 4; ++j)
-        for (int k = 0; j + k <= 4; ++k, ++n) {
-            const Barycentric b(1 - (j + k) / 4.0, j / 4.0, k / 4.0);
-            const glm::dvec2 at = (evaluate(mPatch, b) - mCentre) * mInverseSize;
-            x[n] = float(at.x);
-            y[n] = float(at.y);
-            trueV[n] = float(b.y) - kThird;
-            trueW[n] = float(b.z) - kThird;
-            v[n] = mStart[0][0] + mStart[0][1] * x[n] + mStart[0][2] * y[n];
-            w[n] = mStart[1][0] + mStart[1][1] * x[n] + mStart[1][2] * y[n];
-        }
-    for (mSteps = 1; mSteps < kMaxSteps; ++mSteps) {
+    // The thirds of the sides and two points inside; the guess is right at the corners.
+    constexpr size_t kPoints = 8;
+    constexpr float kTrueV[kPoints] = {0, kThird, kThird, 0, -kThird, -kThird, .25f - kThird, .5f - kThird};
+    constexpr float kTrueW[kPoints] = {-kThird, -kThird, 0, kThird, kThird, 0, .25f - kThird, .25f - kThird};
+    float x[kPoints], y[kPoints], v[kPoints], w[kPoints], last[kPoints];
+    for (size_t i = 0; i < kPoints; ++i) {
+        x[i] = value(mMap.coefficients[0], kTrueV[i], kTrueW[i]);
+        y[i] = value(mMap.coefficients[1], kTrueV[i], kTrueW[i]);
+        v[i] = mMap.start[0][0] + mMap.start[0][1] * x[i] + mMap.start[0][2] * y[i];
+        w[i] = mMap.start[1][0] + mMap.start[1][1] * x[i] + mMap.start[1][2] * y[i];
+    }
+    for (mMap.steps = 1; mMap.steps < kMaxSteps; ++mMap.steps) {
         float worst = 0;
         for (size_t i = 0; i < kPoints; ++i)
-            worst = std::max({worst, std::abs(v[i] - trueV[i]), std::abs(w[i] - trueW[i])});
+            worst = std::max({worst, std::abs(v[i] - kTrueV[i]), std::abs(w[i] - kTrueW[i])});
         if (worst < .5f * kLastStep) break;
-        runSteps(1, mCoefficients, x, y, kPoints, v, w, last);
+        newtonStep(mMap.coefficients, x, y, kPoints, v, w, last);
     }
 }
 
-void PatchInverse::solve(const float* x, const float* y, size_t count, float* v, float* w) const {
+void PatchInverse::solve(float* x, float* y, size_t count, float* v, float* w) const {
     TESSERA_CHECK(count <= kMaxBatch);
-    static const RunSteps run = chooseRunSteps();
-    float last[kMaxBatch];
-    for (size_t i = 0; i < count; ++i) {
-        v[i] = mStart[0][0] + mStart[0][1] * x[i] + mStart[0][2] * y[i];
-        w[i] = mStart[1][0] + mStart[1][1] * x[i] + mStart[1][2] * y[i];
-        last[i] = 0;
-    }
-    run(mSteps, mCoefficients, x, y, count, v, w, last);
-    for (size_t i = 0; i < count; ++i) {
-        v[i] += kThird;
-        w[i] += kThird;
-        // Negated so that NaN counts as bad.
-        const bool good = v[i] >= 0 && w[i] >= 0 && v[i] + w[i] <= 1 && last[i] <= kLastStep * kLastStep;
-        if (!good) repair(x[i], y[i], v[i], w[i]);
-    }
+    const size_t padded = (count + kVector - 1) / kVector * kVector;
+    std::fill(x + count, x + padded, 0.0f);
+    std::fill(y + count, y + padded, 0.0f);
+    int32_t bad[kMaxBatch];
+    if (solveBest(mMap, x, y, padded, v, w, bad) == 0) return;
+    for (size_t i = 0; i < count; ++i)
+        if (bad[i] != 0) repair(x[i], y[i], v[i], w[i]);
 }
 
 void PatchInverse::repair(float x, float y, float& v, float& w) const {
-    const glm::dvec2 point = mCentre + glm::dvec2(x, y) / mInverseSize;
-    // A little outside: clamped parameters, where their point is near enough.
+    // Mostly converged, and outside by rounding: then the clamped parameters are near enough.
     Barycentric b = glm::max(Barycentric(1 - double(v) - double(w), v, w), Barycentric(0));
     b /= b.x + b.y + b.z;
-    if (!(glm::distance(evaluate(mPatch, b), point) <= mTolerance))
-        b = nearestParameters(mPatch, point, mTolerance);
+    if (mMap.steps > 0) {
+        const glm::dvec2 point = mCentre + glm::dvec2(x, y) / mInverseSize;
+        constexpr double kSingle = 1e-6;  // what single precision leaves, of the patch's size
+        const double tolerance = std::max(mTolerance, kSingle / mInverseSize);
+        if (!(glm::distance(evaluate(mPatch, b), point) <= tolerance))
+            b = nearestParameters(mPatch, point, tolerance);
+    }
     v = float(b.y);
     w = float(b.z);
 }

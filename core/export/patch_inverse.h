@@ -7,6 +7,13 @@
 
 namespace tessera {
 
+// The inner loop's view of a patch. Coordinates relative to the patch, parameters to the domain's centroid.
+struct PatchInverseMap {
+    float start[2][3];         // the affine guess: constant, share of x, share of y; for v and for w
+    float coefficients[2][9];  // x and y in powers of (v, w); their order is in patch_inverse.cpp
+    int steps = 0;             // of Newton's method; 0 where the patch is affine
+};
+
 // Points in coordinates relative to the patch: (image point - centre()) * inverseSize().
 class PatchInverse {
   public:
@@ -17,9 +24,11 @@ class PatchInverse {
     double inverseSize() const { return mInverseSize; }
 
     // (v, w) of each point, in the domain: parameters outside it, where the point is not quite in the patch,
-    // are clamped. Each result depends on its own point alone, to the last bit. At most kMaxBatch points.
+    // are clamped. Each result depends on its own point alone, to the last bit. At most kMaxBatch points; the
+    // arrays have room up to the next multiple of kVector, which is written.
+    static constexpr size_t kVector = 8;
     static constexpr size_t kMaxBatch = 512;
-    void solve(const float* x, const float* y, size_t count, float* v, float* w) const;
+    void solve(float* x, float* y, size_t count, float* v, float* w) const;
 
   private:
     void chooseSteps();
@@ -29,9 +38,7 @@ class PatchInverse {
     double mTolerance;
     glm::dvec2 mCentre;
     double mInverseSize = 1;
-    float mStart[2][3];         // the affine guess: v and w as constant, x and y share
-    float mCoefficients[2][9];  // the map in powers of (v - 1/3, w - 1/3); see patch_inverse.cpp
-    int mSteps = 0;             // of Newton's method; 0 where the patch is affine
+    PatchInverseMap mMap;
 };
 
 }  // namespace tessera

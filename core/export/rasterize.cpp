@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -60,7 +61,8 @@ void processTile(const PatchMesh& mesh, const ScanConversion& scan, const Tile& 
                  Emit&& emit) {
     const PixelGrid& grid = scan.grid();
     std::vector<PixelRun> runs;
-    const double tolerance = .1 / std::max(grid.scale.x, grid.scale.y);
+    // Sides are drawn to a thousandth of an output pixel.
+    const double tolerance = .002 / std::max(grid.scale.x, grid.scale.y);
     for (const uint32_t index : tile.patches) {
         batch.patch = scan.patches()[index];
         const PixelRect& box = scan.bounds(index);
@@ -94,6 +96,23 @@ void processTile(const PatchMesh& mesh, const ScanConversion& scan, const Tile& 
     }
 }
 
+// std::copy_n for the few pixels that a run has: no call, the last vector overlapping the one before.
+inline void copyRun(const float* from, size_t n, float* to) {
+    constexpr size_t kVector = 8;
+    if (n >= kVector) {
+        for (size_t i = 0; i + kVector <= n; i += kVector)
+            std::memcpy(to + i, from + i, kVector * sizeof(float));
+        std::memcpy(to + n - kVector, from + n - kVector, kVector * sizeof(float));
+    } else if (n >= kVector / 2) {
+        std::memcpy(to, from, kVector / 2 * sizeof(float));
+        std::memcpy(to + n - kVector / 2, from + n - kVector / 2, kVector / 2 * sizeof(float));
+    } else {
+        if (n > 0) to[0] = from[0];
+        if (n > 1) to[1] = from[1];
+        if (n > 2) to[2] = from[2];
+    }
+}
+
 // Evaluates a batch's colours and writes them into `image`, whose pixel (0, 0) is the view's (x0, y0).
 void shade(const PatchMesh& mesh, const Batch& batch, Image& image, int x0, int y0) {
     alignas(32) float x[Batch::kSize], y[Batch::kSize], colour[kMaxChannels][Batch::kSize];
@@ -108,9 +127,8 @@ void shade(const PatchMesh& mesh, const Batch& batch, Image& image, int x0, int 
         const float* from = colour[c];
         float* plane = image.plane(c).data();
         for (const PixelRun& run : batch.runs) {
-            const int n = run.end - run.begin;
-            std::copy_n(from, n,
-                        plane + size_t(run.row - y0) * size_t(image.width()) + size_t(run.begin - x0));
+            const auto n = size_t(run.end - run.begin);
+            copyRun(from, n, plane + size_t(run.row - y0) * size_t(image.width()) + size_t(run.begin - x0));
             from += n;
         }
     }

@@ -34,7 +34,8 @@ struct RasterizeOptions {
 
 // (a) Section 5 as it stands: every patch is subdivided 4-way until a piece's bounding box is smaller than an output
 // pixel; pieces are triangles; a pixel centre in one gets its parameters by barycentric interpolation, then its colour
-// by one evaluation of the spline. Slow and plain: the reference. Pixels that no piece covers stay 0.
+// by one evaluation of the spline. Slow and plain: the reference. Pixels that no piece covers stay 0: up to one in
+// ten thousand falls into a crack between neighbouring pieces that were cut to different depths, also within a patch.
 Image rasterizeReference(const PatchMesh& mesh, const View& view);
 std::vector<PixelOwner> locatePixelsReference(const PatchMesh& mesh, const View& view);
 

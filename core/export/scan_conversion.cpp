@@ -57,19 +57,29 @@ struct EdgeCubic {
     }
 };
 
-// The t in [lo, hi] with cubic.at(t) = target, where the cubic is monotone: Newton's method, bisecting where
-// it leaves the interval. One end where the target lies outside by rounding.
-double solveMonotone(const Cubic& cubic, bool rising, double target, double lo, double hi, double t) {
+// The t in [lo, hi] with cubic.at(t) = target, where the cubic is monotone: Newton's method from `t`,
+// bisecting where it leaves the interval. One end where the target lies outside by rounding. Sets `slope` to
+// that near the result.
+double solveMonotone(const Cubic& cubic, bool rising, double target, double lo, double hi, double t,
+                     double& slope) {
+    // A Newton step below this is followed by one of about its square, which nobody would see.
+    constexpr double kSmallStep = 1e-6;
     const double tolerance = 1e-9 + 1e-14 * std::abs(target);
     for (int i = 0; i < 60; ++i) {
         const double f = cubic.at(t) - target;
+        slope = cubic.slope(t);
         if (std::abs(f) <= tolerance) break;
         if ((f < 0) == rising)
             lo = t;
         else
             hi = t;
-        const double next = t - f / cubic.slope(t);
-        t = next > lo && next < hi ? next : .5 * (lo + hi);
+        const double step = f / slope, next = t - step;
+        if (next > lo && next < hi) {
+            t = next;
+            if (std::abs(step) < kSmallStep) break;
+        } else {
+            t = .5 * (lo + hi);
+        }
     }
     return t;
 }
@@ -82,6 +92,8 @@ PixelGrid::PixelGrid(const View& view)
       scale(view.scale),
       unitX(view.scale.x * double(kOne)),
       unitY(view.scale.y * double(kOne)),
+      pixelX(1 / unitX),
+      pixelY(1 / unitY),
       originX(rounded(view.origin.x * unitX)),
       originY(rounded(view.origin.y * unitY)) {
     TESSERA_CHECK(scale.x > 0 && scale.y > 0 && width >= 0 && height >= 0);
@@ -204,14 +216,16 @@ void ScanConversion::fillColumns(EdgeId e, const Piece& piece) {
         return;
     }
     double lo = piece.t0, hi = piece.t1;
-    double t = .5 * (lo + hi);
+    double t = .5 * (lo + hi), slope = 0;
     for (int row = piece.row0; row < piece.row1; ++row) {
         const int64_t centre = mGrid.originY + row * PixelGrid::kOne + PixelGrid::kOne / 2;
-        t = solveMonotone(cubic.y, rising, double(centre - y0) / double(PixelGrid::kOne), lo, hi, t);
-        // The next row's t lies beyond this one.
-        (rising ? lo : hi) = t;
+        t = solveMonotone(cubic.y, rising, double(centre - y0) / double(PixelGrid::kOne), lo, hi, t, slope);
         const double x = std::ceil(cubic.x.at(t) * double(PixelGrid::kOne));
         *column++ = mGrid.column(x0 + int64_t(std::clamp(x, -kLimit, kLimit)));
+        // The next row's t lies beyond this one, about a pixel along the tangent.
+        (rising ? lo : hi) = t;
+        const double guess = t + 1 / slope;
+        t = guess > lo && guess < hi ? guess : .5 * (lo + hi);
     }
 }
 

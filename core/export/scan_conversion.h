@@ -25,13 +25,14 @@ struct PixelGrid {
     // The first column or row whose centre is at or beyond a coordinate, limited to 0 .. width or height.
     int column(int64_t x) const;
     int row(int64_t y) const;
-    // The image point of a pixel centre. Exact but for one division.
-    double centreX(int column) const { return (double(originX + kOne / 2) + double(column) * kOne) / unitX; }
-    double centreY(int row) const { return (double(originY + kOne / 2) + double(row) * kOne) / unitY; }
+    // The image point of a pixel centre. Exact but for one rounding.
+    double centreX(int column) const { return (double(originX + kOne / 2) + double(column) * kOne) * pixelX; }
+    double centreY(int row) const { return (double(originY + kOne / 2) + double(row) * kOne) * pixelY; }
 
     int width, height;
     glm::dvec2 scale;
-    double unitX, unitY;  // grid units per image pixel
+    double unitX, unitY;    // grid units per image pixel
+    double pixelX, pixelY;  // image pixels per grid unit
     int64_t originX, originY;
 };
 

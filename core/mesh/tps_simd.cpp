@@ -1,6 +1,7 @@
 // Splines at many points with vector instructions: the fast twin of evaluateSpline (COLOUR.md; paper Eqs. 2
 // and 3).
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "core/base/check.h"
@@ -26,17 +27,31 @@ struct Packed {
     static constexpr int kMaxTerms = 255;
 
     Packed(const PatchSpline& spline, int channels) : terms(spline.maxTerms(channels)) {
-        for (int i = 0; i < terms; ++i) {
-            const glm::dvec2 centre = spline.centre(i);
-            centreX[i] = float(centre.x);
-            centreY[i] = float(centre.y);
+        static const auto kDefaults = [] {
+            std::array<std::array<float, kDefaultCentreCount>, 2> xy{};
+            for (size_t i = 0; i < kDefaultCentreCount; ++i) {
+                xy[0][i] = float(defaultCentres()[i].x);
+                xy[1][i] = float(defaultCentres()[i].y);
+            }
+            return xy;
+        }();
+        if (spline.centres.empty()) {
+            TESSERA_CHECK(terms <= kDefaultCentreCount);
+            std::copy_n(kDefaults[0].data(), kDefaultCentreCount, centreX);
+            std::copy_n(kDefaults[1].data(), kDefaultCentreCount, centreY);
+        } else {
+            for (int i = 0; i < terms; ++i) {
+                centreX[i] = spline.centres[size_t(i)].x;
+                centreY[i] = spline.centres[size_t(i)].y;
+            }
         }
+        const float* k = spline.coefficients.data();
         for (int c = 0; c < channels; ++c) {
-            const float* k = spline.coefficients.data() + spline.offset(c);
             const int own = spline.terms[size_t(c)];
             for (int i = 0; i < 3; ++i) affine[c][i] = k[i];
             for (int i = 0; i < own; ++i) alpha[c][i] = kHalfLog2 * k[3 + i];
             for (int i = own; i < terms; ++i) alpha[c][i] = 0;
+            k += 3 + own;
         }
     }
 

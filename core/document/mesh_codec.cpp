@@ -1,0 +1,250 @@
+// See mesh_codec.h.
+#include "core/document/mesh_codec.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/document/byte_stream.h"
+#include "core/document/colour_codec.h"
+#include "core/document/file_mesh.h"
+#include "core/document/geometry_codec.h"
+#include "core/document/range_coder.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr uint32_t kMaxFaces = 1u << 26;
+constexpr size_t kGrain = 64;
+
+tl::unexpected<Error> broken(const std::string& what) {
+    return failure(ErrorCode::Internal, "the mesh cannot be stored: it " + what + "; please report this");
+}
+
+// The file's view of a mesh's triangles, from the order that the encoder has chosen.
+FileMesh fileMesh(const HalfedgeMesh& mesh, const FileOrder& order, std::vector<uint32_t>& fileVertex) {
+    FileMesh file;
+    file.vertexCount = uint32_t(order.vertices.size());
+    fileVertex.assign(mesh.vertexCapacity(), FileMesh::kNone);
+    for (uint32_t i = 0; i < order.vertices.size(); ++i) fileVertex[order.vertices[i].index] = i;
+    for (const FaceId f : order.faces) {
+        const auto corners = mesh.corners(f);
+        file.triangles.push_back(
+            {fileVertex[corners[0].index], fileVertex[corners[1].index], fileVertex[corners[2].index]});
+    }
+    return file;
+}
+
+// The halfedge of each edge of the file, in the file's direction. `faces` by the file's ids.
+std::vector<HalfedgeId> edgeHalfedges(const FileMesh& file, const HalfedgeMesh& mesh,
+                                      const std::vector<FaceId>& faces) {
+    std::vector<HalfedgeId> halfedges;
+    halfedges.reserve(file.edges.size());
+    for (const FileMesh::Edge& e : file.edges) halfedges.push_back(mesh.sides(faces[e.face])[e.side]);
+    return halfedges;
+}
+
+bool runsAlong(HalfedgeId h) {
+    return HalfedgeMesh::halfedge(HalfedgeMesh::edge(h)) == h;
+}
+
+std::string gatherEdges(const PatchMesh& mesh, const std::vector<HalfedgeId>& halfedges, FileGeometry& g) {
+    for (const HalfedgeId h : halfedges) {
+        const auto points = mesh.controlPoints(h);
+        g.inner.push_back({points[1], points[2]});
+        const EdgeCurve& curve = mesh.curve(HalfedgeMesh::edge(h));
+        FileGeometry::Attributes a;
+        a.feature = curve.feature;
+        for (size_t i = 0; i < 2; ++i) {
+            const float sigma = curve.blurSigma[runsAlong(h) ? i : 1 - i];
+            if (!(sigma >= 0 && double(sigma) * kBlurStepsPerPixel <= double(kMaxBlurSteps)))
+                return "has a blur that is not a number from 0 to 65536";
+            a.blur[i] = std::llround(double(sigma) * kBlurStepsPerPixel);
+        }
+        g.attributes.push_back(a);
+    }
+    return {};
+}
+
+std::string gatherJoins(const PatchMesh& mesh, const FileMesh& file, const std::vector<HalfedgeId>& halfedges,
+                        const std::vector<uint32_t>& fileVertex, FileGeometry& g) {
+    std::vector<uint32_t> fileEdge(mesh.connectivity().edgeCapacity(), FileMesh::kNone);
+    for (uint32_t e = 0; e < halfedges.size(); ++e) fileEdge[HalfedgeMesh::edge(halfedges[e]).index] = e;
+    const auto at = [](const auto& ids, uint32_t index) {
+        return index < ids.size() ? ids[index] : FileMesh::kNone;
+    };
+    for (const SmoothJoin& join : mesh.smoothJoins()) {
+        const uint32_t v = at(fileVertex, join.vertex.index), e = at(fileEdge, join.first.index),
+                       f = at(fileEdge, join.second.index);
+        const auto meets = [&](uint32_t edge) {
+            return edge != FileMesh::kNone && (file.edges[edge].from == v || file.edges[edge].to == v);
+        };
+        if (v == FileMesh::kNone || e == f || !meets(e) || !meets(f))
+            return "has a smooth join of curves that do not meet";
+        g.joins.push_back({v, std::min(e, f), std::max(e, f)});
+    }
+    std::sort(g.joins.begin(), g.joins.end());
+    g.joins.erase(std::unique(g.joins.begin(), g.joins.end()), g.joins.end());
+    return {};
+}
+
+std::vector<bool> featuresOf(const FileGeometry& g) {
+    std::vector<bool> features;
+    features.reserve(g.attributes.size());
+    for (const auto& a : g.attributes) features.push_back(a.feature);
+    return features;
+}
+
+// A mesh from what was decoded, all of it known to be sound.
+PatchMesh assemble(const FileMesh& file, const FileGeometry& g, int channels,
+                   std::vector<PatchSpline> splines) {
+    PatchMesh mesh(g.width, g.height, channels, HalfedgeMesh::fromTriangles(file.vertexCount, file.triangles),
+                   g.positions);
+    std::vector<FaceId> faces;
+    for (uint32_t f = 0; f < file.triangles.size(); ++f) faces.push_back(FaceId(f));
+    const auto halfedges = edgeHalfedges(file, mesh.connectivity(), faces);
+    for (uint32_t e = 0; e < halfedges.size(); ++e) {
+        const HalfedgeId h = halfedges[e];
+        const size_t first = runsAlong(h) ? 0 : 1;
+        EdgeCurve curve;
+        curve.c1 = g.inner[e][first];
+        curve.c2 = g.inner[e][1 - first];
+        curve.feature = g.attributes[e].feature;
+        for (size_t i = 0; i < 2; ++i)
+            curve.blurSigma[i] =
+                float(g.attributes[e].blur[i == 0 ? first : 1 - first]) / float(kBlurStepsPerPixel);
+        mesh.setCurve(HalfedgeMesh::edge(h), curve);
+    }
+    for (const FaceId f : faces) {
+        mesh.setInterior(f, g.interior[f.index]);
+        mesh.setSpline(f, std::move(splines[f.index]));
+    }
+    std::vector<SmoothJoin> joins;
+    for (const auto& j : g.joins)
+        joins.push_back({VertexId(j.vertex), HalfedgeMesh::edge(halfedges[j.first]),
+                         HalfedgeMesh::edge(halfedges[j.second])});
+    mesh.setSmoothJoins(std::move(joins));
+    return mesh;
+}
+
+bool sizesGood(int64_t width, int64_t height, int channels) {
+    return width >= 1 && height >= 1 && width <= kMaxPictureSide && height <= kMaxPictureSide &&
+           (channels == 3 || channels == 4);
+}
+
+}  // namespace
+
+Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep) {
+    const int channels = mesh.channels();
+    const HalfedgeMesh& connectivity = mesh.connectivity();
+    if (!sizesGood(mesh.width(), mesh.height(), channels))
+        return broken("has a size that the format does not hold");
+    if (connectivity.faceCount() == 0 || connectivity.faceCount() > kMaxFaces)
+        return broken("has no patches, or more than the format holds");
+
+    RangeEncoder connectivityCoder;
+    const FileOrder order = encodeConnectivity(connectivityCoder, connectivity);
+    if (order.faces.empty()) return broken("is not connected");
+    std::vector<uint32_t> fileVertex;
+    FileMesh file = fileMesh(connectivity, order, fileVertex);
+    if (const auto wrong = deriveFileMesh(file); !wrong.empty()) return broken(wrong);
+    const auto halfedges = edgeHalfedges(file, connectivity, order.faces);
+
+    FileGeometry g;
+    g.width = mesh.width();
+    g.height = mesh.height();
+    for (const VertexId v : order.vertices) g.positions.push_back(mesh.position(v));
+    for (const FaceId f : order.faces) g.interior.push_back(mesh.interior(f));
+    if (const auto wrong = gatherEdges(mesh, halfedges, g); !wrong.empty()) return broken(wrong);
+    if (const auto wrong = gatherJoins(mesh, file, halfedges, fileVertex, g); !wrong.empty())
+        return broken(wrong);
+    RangeEncoder geometryCoder, curveCoder, colourCoder;
+    if (const auto wrong = encodeGeometry(geometryCoder, file, g); !wrong.empty()) return broken(wrong);
+    if (const auto wrong = borderViolation(file, g); !wrong.empty()) return broken(wrong);
+    if (const auto wrong = encodeAttributes(curveCoder, file, g); !wrong.empty()) return broken(wrong);
+
+    for (const FaceId f : order.faces)
+        if (const auto wrong = splineViolation(mesh.spline(f), channels); !wrong.empty())
+            return broken("has a patch whose colour " + wrong);
+    std::vector<FileColour> colours(order.faces.size());
+    parallelFor(colours.size(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            colours[i] = quantized(mesh.spline(order.faces[i]), channels, colourStep);
+    });
+    if (const auto wrong = encodeColours(colourCoder, file, featuresOf(g), channels, colours); !wrong.empty())
+        return broken(wrong);
+
+    MeshChunks chunks;
+    ByteWriter head;
+    head.u32(uint32_t(g.width));
+    head.u32(uint32_t(g.height));
+    head.u8(uint8_t(channels));
+    head.u32(uint32_t(file.triangles.size()));
+    head.raw(connectivityCoder.finish());
+    chunks.connectivity = head.take();
+    chunks.geometry = geometryCoder.finish();
+    chunks.curves = curveCoder.finish();
+    ByteWriter colourHead;
+    colourHead.f64(colourStep);
+    colourHead.raw(colourCoder.finish());
+    chunks.colours = colourHead.take();
+    // A byte for each patch, so that a reader can bound what it takes.
+    if (chunks.colours.size() < file.triangles.size()) chunks.colours.resize(file.triangles.size());
+    return chunks;
+}
+
+tl::expected<DecodedMesh, MeshDamage> decodeMesh(const MeshChunkBytes& chunks) {
+    const auto damage = [](auto chunk, std::string what) {
+        return tl::unexpected<MeshDamage>(MeshDamage{chunk, std::move(what)});
+    };
+    ByteReader head(chunks.connectivity);
+    FileGeometry g;
+    const uint32_t width = head.u32(), height = head.u32();
+    const int channels = head.u8();
+    const uint32_t faceCount = head.u32();
+    if (head.failed()) return damage(MeshDamage::Connectivity, "ends within its first numbers");
+    if (!sizesGood(width, height, channels))
+        return damage(MeshDamage::Connectivity, "has a picture size that cannot be");
+    if (faceCount == 0 || faceCount > kMaxFaces || faceCount > chunks.colours.size())
+        return damage(MeshDamage::Connectivity, "has a number of patches that cannot be");
+    g.width = int(width);
+    g.height = int(height);
+
+    FileMesh file;
+    RangeDecoder connectivityCoder(head.raw(head.left()));
+    if (auto wrong = decodeConnectivity(connectivityCoder, faceCount, file); !wrong.empty())
+        return damage(MeshDamage::Connectivity, std::move(wrong));
+    if (auto wrong = deriveFileMesh(file); !wrong.empty())
+        return damage(MeshDamage::Connectivity, std::move(wrong));
+
+    RangeDecoder geometryCoder(chunks.geometry), curveCoder(chunks.curves);
+    if (auto wrong = decodeGeometry(geometryCoder, file, g); !wrong.empty())
+        return damage(MeshDamage::Geometry, std::move(wrong));
+    if (auto wrong = borderViolation(file, g); !wrong.empty())
+        return damage(MeshDamage::Geometry, std::move(wrong));
+    if (auto wrong = decodeAttributes(curveCoder, file, g); !wrong.empty())
+        return damage(MeshDamage::Curves, std::move(wrong));
+
+    ByteReader colourHead(chunks.colours);
+    DecodedMesh decoded;
+    decoded.colourStep = colourHead.f64();
+    if (!(decoded.colourStep >= 1e-9 && decoded.colourStep <= 1))
+        return damage(MeshDamage::Colours, "has a colour step that cannot be");
+    RangeDecoder colourCoder(colourHead.raw(colourHead.left()));
+    std::vector<FileColour> colours;
+    if (auto wrong = decodeColours(colourCoder, file, featuresOf(g), channels, colours); !wrong.empty())
+        return damage(MeshDamage::Colours, std::move(wrong));
+    std::vector<PatchSpline> splines(colours.size());
+    parallelFor(colours.size(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            splines[i] = dequantized(colours[i], channels, decoded.colourStep);
+    });
+    for (const PatchSpline& spline : splines)
+        if (auto wrong = splineViolation(spline, channels); !wrong.empty())
+            return damage(MeshDamage::Colours, std::move(wrong));
+    decoded.mesh = assemble(file, g, channels, std::move(splines));
+    return decoded;
+}
+
+}  // namespace tessera

@@ -1,0 +1,34 @@
+// A PatchMesh to and from the four mesh chunks of a document.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/mesh/patch_mesh.h"
+
+namespace tessera {
+
+struct MeshChunks {
+    std::vector<uint8_t> connectivity, geometry, curves, colours;
+};
+
+// Fails with Internal where the mesh is not one that decodeMesh would accept; the message says why.
+Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep);
+
+struct MeshChunkBytes {
+    std::span<const uint8_t> connectivity, geometry, curves, colours;
+};
+struct DecodedMesh {
+    PatchMesh mesh;
+    double colourStep = 0;
+};
+// Which of the chunks is wrong, and how.
+struct MeshDamage {
+    enum { Connectivity, Geometry, Curves, Colours } chunk = Connectivity;
+    std::string what;
+};
+tl::expected<DecodedMesh, MeshDamage> decodeMesh(const MeshChunkBytes& chunks);
+
+}  // namespace tessera

@@ -1,0 +1,469 @@
+// The document codec: what comes back, what is refused, and that storing a second time changes nothing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "core/document/chunk_file.h"
+#include "core/document/codec.h"
+#include "core/document/colour_codec.h"
+#include "core/document/xxhash64.h"
+#include "tests/support/random_documents.h"
+
+namespace tessera {
+namespace {
+
+using ::testing::AnyOf;
+using testing::curvedMesh;
+using testing::gridMesh;
+using ::testing::HasSubstr;
+using testing::richDocument;
+
+std::vector<uint8_t> encoded(Document& d) {
+    auto bytes = encodeDocument(d);
+    EXPECT_TRUE(bytes) << bytes.error().message;
+    return bytes ? *bytes : std::vector<uint8_t>();
+}
+
+Document decoded(const std::vector<uint8_t>& bytes) {
+    auto d = decodeDocument(bytes);
+    EXPECT_TRUE(d) << d.error().message;
+    return d ? *d : Document();
+}
+
+// A patch as geometry alone: what must be the same whatever its number.
+struct PatchShape {
+    LatticeTriangle points;
+    std::array<bool, 3> features{};
+    std::array<std::array<float, 2>, 3> blurs{};  // along the side
+    auto key() const { return std::pair(points.p, features); }
+    bool operator<(const PatchShape& o) const { return key() < o.key(); }
+};
+
+PatchShape shapeOf(const PatchMesh& mesh, PatchId p) {
+    PatchShape shape{mesh.controlPoints(p), {}, {}};
+    const auto sides = mesh.connectivity().sides(p);
+    for (size_t s = 0; s < 3; ++s) {
+        const EdgeCurve& curve = mesh.curve(HalfedgeMesh::edge(sides[s]));
+        shape.features[s] = curve.feature;
+        shape.blurs[s] = curve.blurSigma;
+        if (HalfedgeMesh::halfedge(HalfedgeMesh::edge(sides[s])) != sides[s])
+            std::swap(shape.blurs[s][0], shape.blurs[s][1]);
+    }
+    return shape;
+}
+
+double largestColourChange(const PatchSpline& a, const PatchSpline& b, int channels) {
+    double largest = 0;
+    for (int i = 0; i <= 24; ++i)
+        for (int j = 0; i + j <= 24; ++j) {
+            const glm::dvec2 at = domainPoint({1 - (i + j) / 24.0, i / 24.0, j / 24.0});
+            for (int c = 0; c < channels; ++c)
+                largest = std::max(largest, std::abs(evaluateSpline(a, c, at) - evaluateSpline(b, c, at)));
+        }
+    return largest;
+}
+
+TEST(Checksum, IsXxh64) {
+    const auto hash = [](std::string_view text) {
+        return xxhash64({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+    };
+    EXPECT_EQ(hash(""), 0xEF46DB3751D8E999u);
+    EXPECT_EQ(hash("a"), 0xD24EC4F1A98C6E5Bu);
+    EXPECT_EQ(hash("abc"), 0x44BC2CF5AD770999u);
+    EXPECT_EQ(hash("Nobody inspects the spammish repetition"), 0xFBCEA83C8A378BF1u);
+}
+
+TEST(Document, KeepsEveryPatch) {
+    for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+        Document d = richDocument(seed, seed % 2 == 0 ? 4 : 3, seed > 2 ? 30 : 0);
+        const Document back = decoded(encoded(d));
+        ASSERT_EQ(back.mesh.patchCount(), d.mesh.patchCount());
+        EXPECT_EQ(back.mesh.connectivity().edgeCount(), d.mesh.connectivity().edgeCount());
+        EXPECT_EQ(back.mesh.connectivity().vertexCount(), d.mesh.connectivity().vertexCount());
+        EXPECT_EQ(back.mesh.smoothJoins().size(), d.mesh.smoothJoins().size());
+        std::map<PatchShape, PatchId> originals;
+        d.mesh.forEachPatch([&](PatchId p) { originals[shapeOf(d.mesh, p)] = p; });
+        ASSERT_EQ(originals.size(), d.mesh.patchCount());
+        back.mesh.forEachPatch([&](PatchId p) {
+            const PatchShape shape = shapeOf(back.mesh, p);
+            const auto original = originals.find(shape);
+            ASSERT_NE(original, originals.end());
+            for (size_t s = 0; s < 3; ++s)
+                for (size_t i = 0; i < 2; ++i)
+                    EXPECT_NEAR(shape.blurs[s][i], original->first.blurs[s][i], .5001 / 256);
+            const PatchSpline& spline = d.mesh.spline(original->second);
+            EXPECT_EQ(back.mesh.spline(p).terms, spline.terms);
+            EXPECT_LE(largestColourChange(back.mesh.spline(p), spline, d.mesh.channels()), .1 / 255);
+        });
+    }
+}
+
+TEST(Document, KeepsSmoothJoins) {
+    Document d = richDocument(5, 3, 25);
+    const Document back = decoded(encoded(d));
+    const auto places = [](const PatchMesh& mesh) {
+        std::vector<std::array<LatticePoint, 3>> all;
+        const HalfedgeMesh& c = mesh.connectivity();
+        for (const SmoothJoin& join : mesh.smoothJoins()) {
+            std::array<LatticePoint, 2> inner;
+            for (size_t i = 0; i < 2; ++i) {
+                const HalfedgeId h = HalfedgeMesh::halfedge(i == 0 ? join.first : join.second);
+                const auto points =
+                    mesh.controlPoints(c.origin(h) == join.vertex ? h : HalfedgeMesh::twin(h));
+                EXPECT_EQ(points[0], mesh.position(join.vertex));
+                inner[i] = points[1];
+            }
+            std::sort(inner.begin(), inner.end());
+            all.push_back({mesh.position(join.vertex), inner[0], inner[1]});
+        }
+        std::sort(all.begin(), all.end());
+        return all;
+    };
+    ASSERT_FALSE(d.mesh.smoothJoins().empty());
+    EXPECT_EQ(places(back.mesh), places(d.mesh));
+}
+
+TEST(Document, KeepsAllThatIsNotMesh) {
+    Document d = richDocument(6);
+    const Document back = decoded(encoded(d));
+    EXPECT_EQ(back.settings, d.settings);
+    EXPECT_EQ(back.report, d.report);
+    EXPECT_EQ(back.source, d.source);
+    EXPECT_EQ(back.colourStep, d.colourStep);
+    EXPECT_EQ(back.unknownChunks, d.unknownChunks);
+    ASSERT_TRUE(back.difference);
+    EXPECT_EQ(back.difference->psnr, 31.25);
+    EXPECT_EQ(back.difference->ssim, .875);
+    ASSERT_TRUE(back.embeddedSource && back.previewPng);
+    EXPECT_EQ(*back.embeddedSource, *d.embeddedSource);
+    EXPECT_EQ(*back.previewPng, *d.previewPng);
+}
+
+TEST(Document, StoredTwiceIsTheSameBytes) {
+    for (unsigned seed = 10; seed < 30; ++seed) {
+        Document d = richDocument(seed, seed % 2 == 0 ? 4 : 3, int(seed % 3) * 20);
+        const auto bytes = encoded(d);
+        Document back = decoded(bytes);
+        ASSERT_EQ(encoded(back), bytes) << seed;
+        Document again = decoded(encoded(back));
+        EXPECT_EQ(encoded(again), bytes) << seed;
+    }
+}
+
+TEST(Document, StoredTwiceIsTheSameBytesForColoursOfAnySize) {
+    for (const float size : {1e-6f, .01f, 1.f, 7.f, 64.f, 1e4f, 1e12f, 3e37f}) {
+        std::mt19937 random(7);
+        Document d;
+        d.mesh = curvedMesh(100, 80, 6, 5, 3);
+        d.mesh.forEachPatch([&](PatchId p) {
+            PatchSpline spline = testing::randomSpline(3, random);
+            for (float& k : spline.coefficients) k *= size / 100;
+            d.mesh.setSpline(p, spline);
+        });
+        const auto bytes = encoded(d);
+        Document back = decoded(bytes);
+        EXPECT_EQ(encoded(back), bytes) << size;
+    }
+}
+
+TEST(Document, NumbersElementsByFormatAndKeepsThatNumbering) {
+    // Decoded meshes are a fixed point: their ids do not move any more.
+    Document d = richDocument(31, 3, 40);
+    Document once = decoded(encoded(d));
+    const Document twice = decoded(encoded(once));
+    once.mesh.forEachPatch([&](PatchId p) {
+        EXPECT_EQ(once.mesh.controlPoints(p).p, twice.mesh.controlPoints(p).p);
+        EXPECT_EQ(once.mesh.spline(p), twice.mesh.spline(p));
+    });
+    once.mesh.forEachEdge([&](EdgeId e) { EXPECT_EQ(once.mesh.curve(e), twice.mesh.curve(e)); });
+    once.mesh.forEachVertex([&](VertexId v) { EXPECT_EQ(once.mesh.position(v), twice.mesh.position(v)); });
+    EXPECT_EQ(once.mesh.smoothJoins(), twice.mesh.smoothJoins());
+}
+
+TEST(ColourCodec, RoundingStaysWithinTheBound) {
+    // The worst splines for the bound: nodal values off by half a step with the signs of a cardinal function.
+    const double step = defaultColourStep();
+    std::mt19937 random(11);
+    double largest = 0;
+    for (int i = 0; i < 400; ++i) {
+        const int n = i % 14 + 3;
+        const NodalBasis basis = nodalBasis(std::span(defaultCentres()).first(size_t(n)));
+        PatchSpline spline;
+        for (int c = 0; c < 3; ++c) {
+            std::vector<double> values;
+            for (int j = 0; j < n; ++j)
+                values.push_back((double(random() % 2000) + (random() % 2 == 0 ? .499 : -.499)) * step);
+            spline.terms[size_t(c)] = uint8_t(n);
+            for (int r = 0; r < n + 3; ++r) {
+                double sum = 0;
+                for (int j = 0; j < n; ++j)
+                    sum += basis.toCoefficients[size_t(r * n + j)] * values[size_t(j)];
+                spline.coefficients.push_back(float(sum));
+            }
+        }
+        const FileColour colour = quantized(spline, 3, step);
+        EXPECT_FALSE(colour.exact);
+        largest = std::max(largest, largestColourChange(spline, dequantized(colour, 3, step), 3));
+    }
+    EXPECT_LE(largest, kColourBound);
+    EXPECT_GT(largest, .5 * kColourBound);  // so that the test does test
+}
+
+TEST(ColourCodec, KeepsSplinesThatBreakTheSideConditionsExactly) {
+    PatchSpline spline;
+    spline.terms = {16, 16, 16, 0};
+    for (int i = 0; i < 3 * 19; ++i) spline.coefficients.push_back(float(i % 7) - 3);
+    const FileColour colour = quantized(spline, 3, defaultColourStep());
+    EXPECT_TRUE(colour.exact);
+    EXPECT_EQ(dequantized(colour, 3, defaultColourStep()), spline);
+}
+
+TEST(Document, DropsUnsafeChunksAfterAnEdit) {
+    Document d = richDocument(8);
+    d.markEdited();
+    ASSERT_EQ(d.unknownChunks.size(), 1u);
+    EXPECT_TRUE(d.unknownChunks[0].safeToCopy);
+    EXPECT_FALSE(d.previewPng);
+    EXPECT_FALSE(d.difference);
+    EXPECT_TRUE(d.embeddedSource);
+}
+
+TEST(Document, IsRefusedWithoutFiniteColours) {
+    for (const float bad :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        Document d;
+        d.mesh = gridMesh(10, 10, 2, 2);
+        PatchSpline spline = d.mesh.spline(PatchId(3));
+        spline.coefficients[1] = bad;
+        d.mesh.setSpline(PatchId(3), spline);
+        const auto bytes = encodeDocument(d);
+        ASSERT_FALSE(bytes);
+        EXPECT_EQ(bytes.error().code, ErrorCode::Internal);
+        EXPECT_THAT(bytes.error().message, HasSubstr("not finite"));
+    }
+}
+
+TEST(Document, IsRefusedWhereItCouldNotBeLoaded) {
+    Document empty;
+    EXPECT_FALSE(encodeDocument(empty));
+    Document d;
+    d.mesh = gridMesh(10, 10, 2, 2);
+    d.mesh.setPosition(VertexId(0), {5, 5});
+    EXPECT_FALSE(encodeDocument(d));
+    d.mesh = gridMesh(10, 10, 2, 2);
+    EdgeCurve curve = d.mesh.curve(EdgeId(2));
+    curve.blurSigma = {-1, 0};
+    d.mesh.setCurve(EdgeId(2), curve);
+    EXPECT_FALSE(encodeDocument(d));
+    d.mesh = gridMesh(10, 10, 2, 2);
+    d.mesh.setSmoothJoins({{VertexId(0), EdgeId(0), EdgeId(0)}});
+    EXPECT_FALSE(encodeDocument(d));
+}
+
+std::vector<Chunk> chunksOf(const std::vector<uint8_t>& bytes) {
+    const auto chunks = unpackChunks(bytes, kFormatVersion);
+    EXPECT_TRUE(chunks);
+    return chunks ? *chunks : std::vector<Chunk>();
+}
+
+// Bytes of a small document, for damaging.
+std::vector<uint8_t> smallDocument() {
+    Document d;
+    d.mesh = curvedMesh(32, 24, 2, 2, 5);
+    d.unknownChunks = {{{'n', 'e', 'w', '1'}, true, {1, 2, 3}}};
+    return encoded(d);
+}
+
+void expectRefused(const std::vector<uint8_t>& bytes, const std::string& what) {
+    const auto d = decodeDocument(bytes);
+    ASSERT_FALSE(d) << what;
+    EXPECT_EQ(d.error().code, ErrorCode::DamagedDocument) << what;
+    EXPECT_FALSE(d.error().message.empty());
+}
+
+TEST(DamagedDocument, IsRefusedAtEveryLength) {
+    const auto bytes = smallDocument();
+    for (size_t length = 0; length < bytes.size(); ++length)
+        expectRefused({bytes.begin(), bytes.begin() + ptrdiff_t(length)}, "cut at " + std::to_string(length));
+    auto longer = bytes;
+    longer.push_back(0);
+    expectRefused(longer, "longer");
+}
+
+TEST(DamagedDocument, IsRefusedWithAnyByteChanged) {
+    const auto bytes = smallDocument();
+    for (size_t at = 0; at < bytes.size(); ++at)
+        for (const int flip : {0x01, 0x80, 0xFF}) {
+            auto changed = bytes;
+            changed[at] = uint8_t(changed[at] ^ flip);
+            expectRefused(changed, "byte " + std::to_string(at));
+        }
+}
+
+// The document with one chunk replaced and all checksums right: what gets past the container.
+std::vector<uint8_t> withChunk(const std::vector<uint8_t>& bytes, const std::string& tag,
+                               const std::vector<uint8_t>& content, uint32_t version = 1) {
+    auto chunks = chunksOf(bytes);
+    for (Chunk& chunk : chunks)
+        if (tagText(chunk.tag) == tag) chunk.bytes = content;
+    return packChunks(version, chunks);
+}
+
+TEST(DamagedDocument, WithRightChecksumsIsRefusedOrSound) {
+    // Every byte of every chunk changed behind the container's back: an error, or a document that can be
+    // stored.
+    const auto bytes = smallDocument();
+    size_t refused = 0, sound = 0;
+    for (const Chunk& chunk : chunksOf(bytes))
+        for (size_t at = 0; at < chunk.bytes.size(); ++at)
+            for (const int flip : {0x01, 0x10, 0xFF}) {
+                std::vector<uint8_t> content(chunk.bytes.begin(), chunk.bytes.end());
+                content[at] = uint8_t(content[at] ^ flip);
+                auto d = decodeDocument(withChunk(bytes, tagText(chunk.tag), content));
+                if (!d) {
+                    EXPECT_EQ(d.error().code, ErrorCode::DamagedDocument);
+                    ++refused;
+                    continue;
+                }
+                ++sound;
+                const auto stored = encodeDocument(*d);
+                ASSERT_TRUE(stored) << tagText(chunk.tag) << " " << at << " " << stored.error().message;
+                Document again = decoded(*stored);
+                EXPECT_EQ(encoded(again), *stored) << tagText(chunk.tag) << " " << at;
+            }
+    EXPECT_GT(refused, 100u);
+    EXPECT_GT(sound, 100u);
+}
+
+TEST(DamagedDocument, CutChunksWithRightChecksumsDoNoHarm) {
+    const auto bytes = smallDocument();
+    for (const Chunk& chunk : chunksOf(bytes))
+        for (size_t length = 0; length < chunk.bytes.size(); ++length) {
+            const std::vector<uint8_t> content(chunk.bytes.begin(), chunk.bytes.begin() + ptrdiff_t(length));
+            auto d = decodeDocument(withChunk(bytes, tagText(chunk.tag), content));
+            if (!d) continue;
+            EXPECT_TRUE(encodeDocument(*d));
+        }
+}
+
+TEST(DamagedDocument, IsNamedWithItsChunkAndOffset) {
+    const auto bytes = smallDocument();
+    const auto chunks = chunksOf(bytes);
+    auto changed = bytes;
+    changed[size_t(chunks[1].offset) + 3] ^= 1;
+    const auto d = decodeDocument(changed);
+    ASSERT_FALSE(d);
+    EXPECT_THAT(d.error().message, HasSubstr("GEOM at byte " + std::to_string(chunks[1].offset)));
+    const auto cut = decodeDocument(withChunk(bytes, "COLR", {}));
+    ASSERT_FALSE(cut);
+}
+
+TEST(DamagedDocument, TextModeAndForeignFilesAreTold) {
+    auto bytes = smallDocument();
+    EXPECT_TRUE(looksLikeDocument(bytes));
+    std::vector<uint8_t> unixEnds = bytes;
+    unixEnds.erase(unixEnds.begin() + 4);  // \r\n became \n
+    const auto d = decodeDocument(unixEnds);
+    ASSERT_FALSE(d);
+    EXPECT_THAT(d.error().message, HasSubstr("text mode"));
+    const std::vector<uint8_t> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n', 0, 0};
+    EXPECT_FALSE(looksLikeDocument(png));
+    EXPECT_THAT(decodeDocument(png).error().message, HasSubstr("does not begin like"));
+}
+
+TEST(DamagedDocument, OfANewerVersionIsRefusedWithASentence) {
+    const auto newer = withChunk(smallDocument(), "", {}, kFormatVersion + 1);
+    const auto d = decodeDocument(newer);
+    ASSERT_FALSE(d);
+    EXPECT_THAT(d.error().message, HasSubstr("newer Tessera"));
+}
+
+TEST(DamagedDocument, CannotClaimMorePatchesThanItsBytes) {
+    auto bytes = smallDocument();
+    auto chunks = chunksOf(bytes);
+    std::vector<uint8_t> content(chunks[0].bytes.begin(), chunks[0].bytes.end());
+    content[11] = 0x03;  // the count's high bytes
+    content[12] = 0x01;
+    expectRefused(withChunk(bytes, "MESH", content), "count");
+}
+
+TEST(Document, OfATrivialMeshCanStillBeLoaded) {
+    // So regular that its colours take less than a byte a patch: the bound on counts must not refuse it.
+    Document d;
+    d.mesh = gridMesh(400, 400, 100, 100);
+    const auto bytes = encoded(d);
+    EXPECT_EQ(decoded(bytes).mesh.patchCount(), 20'000u);
+    EXPECT_LT(bytes.size(), 60'000u);
+}
+
+TEST(Document, SizesOfChunksAddUpToTheFile) {
+    Document d = richDocument(9);
+    const auto bytes = encoded(d);
+    uint64_t sum = 8 + 4 + 4 + 8;
+    const auto sizes = chunkSizes(bytes);
+    ASSERT_TRUE(sizes);
+    for (const ChunkSize& size : *sizes) sum += size.bytes;
+    EXPECT_EQ(sum, bytes.size());
+}
+
+class SavedDocument : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        mFolder =
+            std::filesystem::temp_directory_path() / ("tessera-document-test-" + std::to_string(getpid()));
+        std::filesystem::create_directories(mFolder);
+    }
+    void TearDown() override {
+        std::filesystem::permissions(mFolder, std::filesystem::perms::owner_all);
+        std::filesystem::remove_all(mFolder);
+    }
+    std::filesystem::path mFolder;
+};
+
+TEST_F(SavedDocument, ReplacesTheFileThatWasThere) {
+    const std::string path = (mFolder / "a.tessera").string();
+    Document first = richDocument(1), second = richDocument(2);
+    ASSERT_TRUE(saveDocument(first, path));
+    ASSERT_TRUE(saveDocument(second, path));
+    auto back = loadDocument(path);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(encoded(*back), encoded(second));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(mFolder), {}), 1);
+}
+
+TEST_F(SavedDocument, IsNotWrittenWhereItCannotBe) {
+    Document d = richDocument(1);
+    const auto saved = saveDocument(d, (mFolder / "no-folder" / "a.tessera").string());
+    ASSERT_FALSE(saved);
+    EXPECT_EQ(saved.error().code, ErrorCode::CannotWrite);
+    if (geteuid() == 0) GTEST_SKIP() << "root may write into a read-only folder";
+    std::filesystem::permissions(mFolder,
+                                 std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+    const auto refused = saveDocument(d, (mFolder / "a.tessera").string());
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::CannotWrite);
+}
+
+TEST_F(SavedDocument, ErrorsNameTheFile) {
+    const std::string path = (mFolder / "a.tessera").string();
+    const auto missing = loadDocument(path);
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, ErrorCode::CannotRead);
+    EXPECT_THAT(missing.error().message, HasSubstr(path));
+    const auto folder = loadDocument(mFolder.string());
+    ASSERT_FALSE(folder);
+    EXPECT_EQ(folder.error().code, ErrorCode::CannotRead);
+    std::ofstream(path) << "nothing of the kind";
+    const auto damaged = loadDocument(path);
+    ASSERT_FALSE(damaged);
+    EXPECT_EQ(damaged.error().code, ErrorCode::DamagedDocument);
+    EXPECT_THAT(damaged.error().message, HasSubstr(path));
+}
+
+}  // namespace
+}  // namespace tessera
