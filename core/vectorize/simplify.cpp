@@ -11,6 +11,7 @@
 #include "core/mesh/jacobian.h"
 #include "core/mesh/quadric.h"
 #include "core/vectorize/absorbed_lists.h"
+#include "core/vectorize/candidate_queue.h"
 #include "core/vectorize/smooth_joins.h"
 
 namespace tessera {
@@ -45,13 +46,6 @@ class Simplifier {
     void describe(StageReport& report, std::string& shortfall) const;
 
   private:
-    struct Candidate {
-        float cost;
-        uint32_t halfedge;
-        uint32_t stamp;
-        // Heap order: the cheapest on top, ties by id.
-        bool operator<(const Candidate& o) const { return cost != o.cost ? cost > o.cost : halfedge > o.halfedge; }
-    };
     // The copies that fall together when the origin of a halfedge moves onto its target.
     struct CopyPair {
         uint32_t from, to;
@@ -99,15 +93,13 @@ class Simplifier {
     AbsorbedLists mAbsorbed;
     std::vector<AbsorbedLists::List> mLists;                // by edge
     std::vector<std::array<LatticePoint, 2>> mInner;        // by part, in the direction of the chain
-    std::vector<Candidate> mHeap;
-    bool mHeapReady = false;          // while false, candidates are only collected
+    CandidateQueue mQueue;
     std::vector<uint32_t> mStamps;    // by edge: older candidates are void
     std::vector<uint8_t> mFailures;   // by edge
     // By edge: whether it has a valid candidate, and whether that one's cost is out of date. Quadrics only accumulate,
     // so that an outdated cost is too low, and it is early enough to mend it when it comes to the top.
     enum class Queued : uint8_t { No, Yes, Outdated };
     std::vector<Queued> mQueued;
-    std::vector<EdgeId> mMoved;  // scratch of collapse()
     size_t mCollapses = 0, mRejected = 0, mRefitsRejected = 0;
 };
 
@@ -193,20 +185,16 @@ void Simplifier::queue(EdgeId e) {
     constexpr double kLeastPenalty = 1e-6;
     if (failures > 0) cheaper = (cheaper + kLeastPenalty) * std::pow(4.0, failures);
     mQueued[e.index] = Queued::Yes;
-    mHeap.push_back({float(cheaper), chosen.index, mStamps[e.index]});
-    if (mHeapReady) std::push_heap(mHeap.begin(), mHeap.end());
+    mQueue.push({float(cheaper), chosen.index, mStamps[e.index]});
 }
 
 bool Simplifier::queueAll(Progress& progress) {
-    mHeap.clear();
-    mHeapReady = false;
+    mQueue.clear();
     for (uint32_t e = 0; e < m.mesh.edgeCapacity(); ++e) {
         if (e % 4096 == 0 && progress.stopRequested()) return false;
         mFailures[e] = 0;
         if (m.mesh.alive(EdgeId(e))) queue(EdgeId(e));
     }
-    std::make_heap(mHeap.begin(), mHeap.end());
-    mHeapReady = true;
     return true;
 }
 
@@ -227,20 +215,22 @@ bool Simplifier::run(Progress& progress) {
 
     const auto wanted = size_t(std::max(2, mSettings.patches));
     const size_t initial = m.mesh.faceCount();
+    const auto alive = [&](const Candidate& c) {
+        const uint32_t e = c.halfedge >> 1;
+        return e < mStamps.size() && mStamps[e] == c.stamp && m.mesh.alive(EdgeId(e));
+    };
     size_t before = SIZE_MAX;
     // A rejected edge may become valid through contractions near but not beside it: begin again until none does.
     while (m.mesh.faceCount() > wanted && m.mesh.faceCount() < before) {
         before = m.mesh.faceCount();
         if (!queueAll(progress)) return false;
-        for (size_t steps = 0; !mHeap.empty() && m.mesh.faceCount() > wanted; ++steps) {
+        for (size_t steps = 0; !mQueue.empty() && m.mesh.faceCount() > wanted; ++steps) {
             if (steps % 256 == 0 && !progress.step(double(initial - m.mesh.faceCount()) / double(initial - wanted)))
                 return false;
-            const Candidate top = mHeap.front();
-            std::pop_heap(mHeap.begin(), mHeap.end());
-            mHeap.pop_back();
+            const Candidate top = mQueue.pop(alive);
+            if (!alive(top)) continue;
             const HalfedgeId h(top.halfedge);
             const EdgeId e = HalfedgeMesh::edge(h);
-            if (!m.mesh.alive(e) || mStamps[e.index] != top.stamp) continue;
             if (mQueued[e.index] == Queued::Outdated) {
                 queue(e);
                 continue;
@@ -409,12 +399,8 @@ void Simplifier::collapse(HalfedgeId h, const std::optional<Refit>& curve, std::
         mInner[part] = curve->inner;
     }
 
-    std::vector<EdgeId>& moved = mMoved;
-    moved.clear();
-    m.mesh.forEachOutgoing(u, [&](HalfedgeId out) { moved.push_back(HalfedgeMesh::edge(out)); });
-    m.mesh.forEachOutgoing(v, [&](HalfedgeId out) {
-        if (HalfedgeMesh::edge(out) != HalfedgeMesh::edge(h)) refresh(HalfedgeMesh::edge(out));
-    });
+    // The edges that move with u get new candidates; those of v keep theirs for the time being.
+    m.mesh.forEachOutgoing(u, [&](HalfedgeId out) { mQueued[HalfedgeMesh::edge(out).index] = Queued::No; });
     const auto done = m.mesh.collapse(h, keepOrigin);
     for (const HalfedgeMesh::Merge& merge : done.merges)
         if (merge.kept.valid()) m.copyOfCorner[merge.kept.index] = m.copyOfCorner[merge.replaced.index];
@@ -424,11 +410,7 @@ void Simplifier::collapse(HalfedgeId h, const std::optional<Refit>& curve, std::
         for (int k = 0; k < pairCount; ++k)
             if (m.copyOfCorner[out.index] == pairs[k].from) m.copyOfCorner[out.index] = pairs[k].to;
     });
-    for (const EdgeId e : moved) {
-        if (!m.mesh.alive(e)) continue;
-        mFailures[e.index] = 0;
-        queue(e);
-    }
+    m.mesh.forEachOutgoing(v, [&](HalfedgeId out) { refresh(HalfedgeMesh::edge(out)); });
 }
 
 BaseDomain Simplifier::baseDomain() const {
