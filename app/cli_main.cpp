@@ -5,6 +5,7 @@
 #include "app/cli_compare.h"
 #include "app/cli_info.h"
 #include "app/cli_render.h"
+#include "app/cli_stages.h"
 #include "app/cli_support.h"
 #include "app/cli_validate.h"
 #include "app/cli_vectorize.h"
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
     cli::addInfoCommand(app, exitCode);
     cli::addValidateCommand(app, exitCode);
     cli::addCompareCommand(app, exitCode);
+    cli::addStagesCommand(app, exitCode);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
