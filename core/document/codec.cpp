@@ -171,11 +171,12 @@ Result<void> saveDocument(Document& document, const std::string& path) {
 
 Result<Document> loadDocument(const std::string& path) {
     std::error_code error;
-    const auto size =
-        std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0;
+    const bool plain = std::filesystem::is_regular_file(path, error);
     std::ifstream file(path, std::ios::binary);
-    if (error || !file)
-        return failure(ErrorCode::CannotRead, quoted(path) + " cannot be read; check that it exists");
+    if (!plain || !file)
+        return failure(ErrorCode::CannotRead, quoted(path) + " cannot be read; check that it is a file and allows it");
+    const auto size = std::filesystem::file_size(path, error);
+    if (error) return failure(ErrorCode::CannotRead, quoted(path) + " cannot be read: " + error.message());
     std::vector<uint8_t> bytes(size);
     if (!file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)))
         return failure(ErrorCode::CannotRead, quoted(path) + " cannot be read to its end");

@@ -207,13 +207,12 @@ std::vector<PixelChain> linkChains(const std::vector<uint8_t>& edges, int width,
     return chains;
 }
 
-void chooseSides(PixelChain& chain, const Image& image) {
+void chooseSide(PixelChain& chain, const Image& image) {
     const int n = int(chain.pixels.size());
     const auto pixel = [&](int i) {
         return chain.closed ? chain.pixels[size_t((i % n + n) % n)] : chain.pixels[size_t(std::clamp(i, 0, n - 1))];
     };
-    // Colour difference on the positive side less that on the negative one.
-    std::vector<double> lead(size_t(n), 0);
+    double lead = 0;  // of the positive side
     for (int i = 0; i < n; ++i) {
         const glm::dvec2 along = glm::dvec2(pixel(i + 2) - pixel(i - 2));
         const double length = glm::length(along);
@@ -227,16 +226,9 @@ void chooseSides(PixelChain& chain, const Image& image) {
             positive += p * p;
             negative += m * m;
         }
-        lead[size_t(i)] = std::sqrt(positive) - std::sqrt(negative);
+        lead += std::sqrt(positive) - std::sqrt(negative);
     }
-    constexpr int kWindow = 4;
-    chain.onPositiveSide.resize(size_t(n));
-    for (int i = 0; i < n; ++i) {
-        double sum = 0;
-        for (int k = -kWindow; k <= kWindow; ++k)
-            sum += lead[size_t(chain.closed ? ((i + k) % n + n) % n : std::clamp(i + k, 0, n - 1))];
-        chain.onPositiveSide[size_t(i)] = sum >= 0;
-    }
+    chain.onPositiveSide = lead >= 0;
 }
 
 Result<std::vector<PixelChain>> detectFeatures(const Image& image, const VectorizeSettings& settings,
@@ -259,7 +251,7 @@ Result<std::vector<PixelChain>> detectFeatures(const Image& image, const Vectori
     size_t pixels = 0;
     for (PixelChain& chain : chains) {
         if (!progress.step(.9)) return stopped();
-        chooseSides(chain, image);
+        chooseSide(chain, image);
         pixels += chain.pixels.size();
     }
     report.figures = {{"largest gradient", largest},

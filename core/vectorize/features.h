@@ -16,10 +16,10 @@ namespace tessera {
 // outermost pixels of the picture.
 struct PixelChain {
     std::vector<glm::ivec2> pixels;
-    // For each pixel: whether the true discontinuity lies half a pixel off on the positive side of the chain's
-    // direction d, that of the normal (-d.y, d.x), rather than on the negative one.
-    std::vector<uint8_t> onPositiveSide;
     bool closed = false;
+    // Whether the true discontinuity lies half a pixel off on the positive side of the chain's direction d, that of
+    // the normal (-d.y, d.x), rather than on the negative one.
+    bool onPositiveSide = false;
 
     bool operator==(const PixelChain&) const = default;
 };
@@ -49,9 +49,9 @@ void removeJunctions(std::vector<uint8_t>& edges, const GradientField& gradient)
 // Chains of at least minPixels pixels; open ones first, each set in raster order of their first pixels.
 std::vector<PixelChain> linkChains(const std::vector<uint8_t>& edges, int width, int height, int minPixels);
 
-// Sets onPositiveSide by comparing the colour differences one pixel off on either side, averaged over nine pixels
-// along the chain.
-void chooseSides(PixelChain& chain, const Image& image);
+// Sets onPositiveSide: the side with the larger sum of colour differences from the chain's pixels to one pixel off.
+// One side for a whole chain: changes along it would put steps of a pixel into the feature, and each costs patches.
+void chooseSide(PixelChain& chain, const Image& image);
 
 // Stage "features", variant "canny": all of the above. Variant "none" finds nothing.
 Result<std::vector<PixelChain>> detectFeatures(const Image& image, const VectorizeSettings& settings,

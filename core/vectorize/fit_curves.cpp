@@ -161,6 +161,8 @@ class CurveOptimizer {
     CurveOptimizer(const BaseDomain& base, const VectorizeSettings& settings);
 
     bool optimize(Progress& progress, StageReport& report);
+    // The curves as they are, on the lattice, certified or not.
+    PatchMesh roundedMesh() const;
     PatchMesh certifiedMesh(StageReport& report) const;
 
   private:
@@ -286,6 +288,16 @@ bool CurveOptimizer::optimize(Progress& progress, StageReport& report) {
     return true;
 }
 
+PatchMesh CurveOptimizer::roundedMesh() const {
+    PatchMesh mesh = mBase.mesh;
+    for (const EdgeId e : mFree) {
+        const BezierCurve& curve = mCurves[e.index];
+        mesh.setInnerControlPoints(HalfedgeMesh::halfedge(e), toLattice(curve.p[1]), toLattice(curve.p[2]));
+    }
+    mesh.forEachPatch([&](PatchId p) { mesh.setInterior(p, toLattice(mInteriors[p.index])); });
+    return mesh;
+}
+
 PatchMesh CurveOptimizer::certifiedMesh(StageReport& report) const {
     PatchMesh mesh = mBase.mesh;
     // How much of each curve's way from the straight edge is kept.
@@ -353,9 +365,10 @@ PatchMesh CurveOptimizer::certifiedMesh(StageReport& report) const {
 }  // namespace
 
 Result<PatchMesh> fitCurves(const BaseDomain& base, const VectorizeSettings& settings, StageReport& report,
-                            Progress& progress) {
+                            Progress& progress, const std::function<void(const PatchMesh&)>& observeInitial) {
     if (report.variant == "straight") return base.mesh;
     CurveOptimizer optimizer(base, settings);
+    if (observeInitial) observeInitial(optimizer.roundedMesh());
     if (!optimizer.optimize(progress, report)) return stopped();
     return optimizer.certifiedMesh(report);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 
 #include "core/base/progress.h"
@@ -55,8 +56,9 @@ std::vector<std::vector<EdgeId>> colourEdges(const HalfedgeMesh& mesh, std::span
 // Stage "curves". Variant "traced": each traced path is fitted with a cubic, then all are optimized by Eq. (1) with
 // L-BFGS, curve by curve, until none moves; where that leaves a patch without certificate, its non-feature sides are
 // pulled toward the straight ones until it has one (the base domain's patches all have). Variant "straight" leaves the
-// base domain as it is. Every patch of the result is certified; feature curves are not moved.
+// base domain as it is. Every patch of the result is certified; feature curves are not moved. `observeInitial` sees the
+// fitted curves before Eq. (1), whose patches may fold.
 Result<PatchMesh> fitCurves(const BaseDomain& base, const VectorizeSettings& settings, StageReport& report,
-                            Progress& progress);
+                            Progress& progress, const std::function<void(const PatchMesh&)>& observeInitial = {});
 
 }  // namespace tessera

@@ -106,20 +106,16 @@ uint32_t opposite(const PixelGrid& grid, glm::ivec2 a, glm::ivec2 b, bool positi
 std::vector<Subpixel> traceSubpixels(const PixelGrid& grid, const PixelChain& chain) {
     std::vector<Subpixel> trace;
     const auto n = chain.pixels.size();
+    const bool positive = chain.onPositiveSide;
     const auto at = [&](size_t k) { return chain.pixels[k % n] + 1; };
     for (size_t k = 0; k < n; ++k) {
         const uint32_t self = grid.vertex(at(k));
-        const bool positive = chain.onPositiveSide[k];
         std::vector<uint32_t> fan;
         if (chain.closed || (k > 0 && k + 1 < n))
             fan = sideFan(grid, at(k + n - 1), at(k), at(k + 1), positive);
         else  // an end: the triangle beside the chain's first or last edge
             fan = {k == 0 ? opposite(grid, at(0), at(1), positive) : opposite(grid, at(k), at(k - 1), !positive)};
         for (const uint32_t q : fan) trace.push_back(positive ? Subpixel{q, self} : Subpixel{self, q});
-        if ((chain.closed || k + 1 < n) && chain.onPositiveSide[k] != chain.onPositiveSide[(k + 1) % n]) {
-            const uint32_t next = grid.vertex(at(k + 1));
-            trace.push_back(positive ? Subpixel{next, self} : Subpixel{self, next});
-        }
     }
     return trace;
 }

@@ -89,7 +89,9 @@ Result<VectorImage> runStages(const Image& image, const VectorizeSettings& setti
     if (!base) return tl::unexpected(base.error());
     if (observe.baseDomain) observe.baseDomain(*base);
 
-    auto curved = run("curves", [&](StageReport& r) { return fitCurves(*base, settings, r, progress); });
+    auto curved = run("curves", [&](StageReport& r) { 
+        return fitCurves(*base, settings, r, progress, observe.initialCurves);
+    });
     if (!curved) return tl::unexpected(curved.error());
     if (observe.curves) observe.curves(*curved);
 

@@ -34,6 +34,7 @@ struct StageObserver {
     std::function<void(const std::vector<PixelChain>&)> features;
     std::function<void(const ChannelMeshes&)> initialMesh;
     std::function<void(const BaseDomain&)> baseDomain;
+    std::function<void(const PatchMesh&)> initialCurves;  // patches may fold
     std::function<void(const PatchMesh&)> curves;
 };
 

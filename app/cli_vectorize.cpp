@@ -1,0 +1,218 @@
+// See cli_vectorize.h.
+#include "app/cli_vectorize.h"
+
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "app/cli_document_facts.h"
+#include "app/cli_support.h"
+#include "core/base/atomic_file.h"
+#include "core/base/parallel.h"
+#include "core/document/codec.h"
+#include "core/export/rasterize.h"
+#include "core/image/image_io.h"
+#include "core/vectorize/vectorize.h"
+
+namespace tessera::cli {
+
+namespace {
+
+constexpr double kPreviewSidePx = 256;
+
+struct Arguments {
+    std::string input;
+    std::string output;
+    VectorizeArguments how;
+    bool embed = true;
+    bool json = false;
+};
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double peakRssMb() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return double(usage.ru_maxrss) / 1024;
+}
+
+// The document as a reader will find it: colours rounded as in the file, elements in the file's order. Errors
+// and preview are taken from that, so that they are those of the stored document.
+Result<Document> asStored(Document document) {
+    return encodeDocument(document).and_then(
+        [](const std::vector<uint8_t>& bytes) { return decodeDocument(bytes); });
+}
+
+Result<void> addErrorsAndPreview(Document& document, const Image& image, Progress& progress) {
+    auto rendering = rasterize(document.mesh, wholePicture(document.mesh, {1, 1}), {}, &progress);
+    if (!rendering) return tl::unexpected(rendering.error());
+    auto difference = compareImages(image, *rendering);
+    if (!difference) return tl::unexpected(difference.error());
+    document.difference = *difference;
+
+    const double side = std::max(document.mesh.width(), document.mesh.height());
+    const double scale = std::min(1.0, kPreviewSidePx / side);
+    auto preview =
+        rasterize(document.mesh, wholePicture(document.mesh, {scale, scale}), {.samples = 4}, &progress);
+    if (!preview) return tl::unexpected(preview.error());
+    auto png = encodePng(*preview);
+    if (!png) return tl::unexpected(png.error());
+    document.previewPng = std::make_shared<const std::vector<uint8_t>>(std::move(*png));
+    return {};
+}
+
+// From the picture's file to the document's bytes.
+struct Outcome {
+    Document document;
+    std::vector<uint8_t> bytes;
+};
+Result<Outcome> vectorizeFile(const Arguments& arguments, const VectorizeSettings& settings,
+                              Progress& progress) {
+    auto file = readFile(arguments.input);
+    if (!file) return tl::unexpected(file.error());
+    auto picture = readImage(*file, std::filesystem::path(arguments.input).filename().string());
+    if (!picture) return tl::unexpected(picture.error());
+    if (progress.stopRequested()) return stopped();
+    auto vectorized = vectorize(picture->image, settings, progress);
+    if (!vectorized) return tl::unexpected(vectorized.error());
+
+    Document document;
+    document.mesh = std::move(vectorized->mesh);
+    document.settings = settings;
+    document.report = std::move(vectorized->report);
+    document.source = std::move(picture->source);
+    auto stored = asStored(std::move(document));
+    if (!stored) return tl::unexpected(stored.error());
+    if (auto added = addErrorsAndPreview(*stored, picture->image, progress); !added)
+        return tl::unexpected(added.error());
+    if (arguments.embed)
+        stored->embeddedSource = std::make_shared<const std::vector<uint8_t>>(std::move(*file));
+    auto bytes = encodeDocument(*stored);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return Outcome{std::move(*stored), std::move(*bytes)};
+}
+
+void printOutcome(const Arguments& arguments, const Outcome& outcome, double seconds) {
+    const Document& d = outcome.document;
+    Json json = countsOf(d.mesh);
+    json["seconds"] = seconds;
+    json["stages"] = toJson(d.report);
+    json["peak_rss_mb"] = peakRssMb();
+    json["bytes"] = outcome.bytes.size();
+    json["errors"] = toJson(*d.difference);
+    json["shortfall"] = d.report.shortfall;
+    if (arguments.json) {
+        std::printf("%s\n", json.dump(2).c_str());
+        return;
+    }
+    if (arguments.how.quiet) return;
+    std::printf("%s: %zu patches in %.2f s, mean error %.3f of 255 (%.2f dB), %zu bytes\n",
+                arguments.output.c_str(), d.mesh.patchCount(), seconds, d.difference->mae, d.difference->psnr,
+                outcome.bytes.size());
+    if (!d.report.shortfall.empty()) std::printf("%s\n", d.report.shortfall.c_str());
+}
+
+int run(const Arguments& arguments) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto settings = settingsFrom(arguments.how);
+    if (!settings) return report(settings.error());
+    // Before the long work, not after it.
+    if (const auto writable = checkWritable(arguments.output); !writable) return report(writable.error());
+
+    StopOnSignal stop;
+    ProgressDisplay display(arguments.how.quiet);
+    Progress progress(stop.token(),
+                      [&](std::string_view stage, double, double total) { display.show(stage, total); });
+    Result<Outcome> outcome;
+    withThreads(settings->threads, [&] { outcome = vectorizeFile(arguments, *settings, progress); });
+    display.clear();
+    if (!outcome) return report(outcome.error());
+    const auto written =
+        stop.whileWriting([&] { return writeFileAtomically(arguments.output, outcome->bytes); });
+    if (!written) return report(written.error());
+    printOutcome(arguments, *outcome, secondsSince(start));
+    return kSuccess;
+}
+
+// "NAME=VARIANT" cut in two; Usage where there is no '='.
+Result<std::pair<std::string, std::string>> cutAtEquals(const std::string& text, const std::string& option) {
+    const size_t at = text.find('=');
+    if (at == std::string::npos || at == 0)
+        return failure(ErrorCode::Usage, option + " takes NAME=VALUE, not '" + text + "'");
+    return std::pair(text.substr(0, at), text.substr(at + 1));
+}
+
+std::string stagesHelp() {
+    std::string help = "Stages and their variants, for --stage:";
+    for (const StageVariants& row : stageTable()) {
+        help += "\n  " + row.stage + ":";
+        for (const std::string& variant : row.variants) help += " " + variant;
+    }
+    help += "\nSettings and their defaults, for --set:";
+    for (const auto& [key, value] : toKeyValues({})) help += "\n  " + key + "=" + value;
+    return help;
+}
+
+}  // namespace
+
+void addVectorizeOptions(CLI::App& command, VectorizeArguments& arguments) {
+    command.add_option("--method", arguments.method, "Choice of a variant for each stage (default: paper)");
+    command.add_option("--patches", arguments.patches, "How many patches to aim at")->capture_default_str();
+    command
+        .add_option("--stage", arguments.stages, "Another variant for one stage; may be given several times")
+        ->type_name("NAME=VARIANT")
+        ->allow_extra_args(false);
+    command.add_option("--set", arguments.settings, "A setting; may be given several times")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    command.add_option("--threads", arguments.threads, "Threads, 0 for one a core; never changes the result")
+        ->capture_default_str();
+    command.add_flag("--quiet", arguments.quiet, "Show no progress and no summary");
+    command.footer(stagesHelp());
+}
+
+Result<VectorizeSettings> settingsFrom(const VectorizeArguments& arguments) {
+    VectorizeSettings settings;
+    if (arguments.threads < 0 || arguments.threads > 1024)
+        return failure(ErrorCode::Usage, "--threads is a number from 0 to 1024");
+    settings.threads = arguments.threads;
+    std::vector<std::pair<std::string, std::string>> pairs{{"patches", std::to_string(arguments.patches)}};
+    if (!arguments.method.empty()) pairs.emplace_back("method", arguments.method);
+    for (const std::string& text : arguments.settings) {
+        auto pair = cutAtEquals(text, "--set");
+        if (!pair) return tl::unexpected(pair.error());
+        pairs.push_back(std::move(*pair));
+    }
+    for (const std::string& text : arguments.stages) {
+        auto pair = cutAtEquals(text, "--stage");
+        if (!pair) return tl::unexpected(pair.error());
+        pairs.emplace_back("stage." + pair->first, pair->second);
+    }
+    for (const auto& [key, value] : pairs)
+        if (const auto set = setKeyValue(settings, key, value); !set) return tl::unexpected(set.error());
+    return settings;
+}
+
+void addVectorizeCommand(CLI::App& app, int& exitCode) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* command =
+        app.add_subcommand("vectorize", "Turn a picture into a document of coloured curved patches");
+    command->add_option("input", arguments->input, "The picture: PNG, JPEG, TIFF, EXR, ...")->required();
+    command->add_option("-o,--output", arguments->output, "The document to write")
+        ->required()
+        ->type_name("OUT.tessera");
+    addVectorizeOptions(*command, arguments->how);
+    command->add_flag("--embed,!--no-embed", arguments->embed,
+                      "Keep the picture's file in the document (default)");
+    command->add_flag("--json", arguments->json, "Print what was done as one JSON object");
+    command->callback([arguments, &exitCode] { exitCode = run(*arguments); });
+}
+
+}  // namespace tessera::cli

@@ -1,0 +1,114 @@
+// See wireframe.h.
+#include "core/export/wireframe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/base/check.h"
+
+namespace tessera {
+
+namespace {
+
+const cv::Scalar kFeatureColour(.85, .1, .1), kEdgeColour(.12, .2, .5), kVertexColour(0, 0, 0);
+constexpr int kShift = 4;  // OpenCV's fixed-point coordinates: 1/16 pixel
+
+// Lines over a pale background, in RGB.
+class Drawing {
+  public:
+    Drawing(int width, int height, int scale, const Image& background)
+        : mScale(scale), mCanvas(height * scale, width * scale, CV_32FC3, cv::Scalar(1, 1, 1)) {
+        if (background.empty()) return;
+        constexpr float kPale = .45F;
+        for (int y = 0; y < mCanvas.rows; ++y)
+            for (int x = 0; x < mCanvas.cols; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    const float value = std::clamp(background.at(x / scale, y / scale, c), 0.F, 1.F);
+                    mCanvas.at<cv::Vec3f>(y, x)[c] = 1 - kPale * (1 - value);
+                }
+    }
+
+    void line(std::span<const glm::dvec2> points, const cv::Scalar& colour, int thickness = 1) {
+        std::vector<cv::Point> fixed;
+        for (const glm::dvec2& p : points) fixed.push_back(toFixed(p));
+        cv::polylines(m8(), fixed, false, colour * 255, thickness, cv::LINE_AA, kShift);
+    }
+    void dot(glm::dvec2 at, double radiusPx, const cv::Scalar& colour) {
+        cv::circle(m8(), toFixed(at), int(radiusPx * (1 << kShift)), colour * 255, cv::FILLED, cv::LINE_AA, kShift);
+    }
+    Image image() {
+        const cv::Mat& bytes = m8();
+        Image result(bytes.cols, bytes.rows, 3);
+        for (int y = 0; y < bytes.rows; ++y)
+            for (int x = 0; x < bytes.cols; ++x)
+                for (int c = 0; c < 3; ++c) result.at(x, y, c) = float(bytes.at<cv::Vec3b>(y, x)[c]) / 255;
+        return result;
+    }
+
+  private:
+    cv::Point toFixed(glm::dvec2 p) const {
+        const double unit = mScale * (1 << kShift), half = (1 << kShift) / 2.0;  // OpenCV's pixel centres are whole
+        return {int(std::lround(p.x * unit - half)), int(std::lround(p.y * unit - half))};
+    }
+    // Anti-aliased lines exist for 8 bits only.
+    cv::Mat& m8() {
+        if (mBytes.empty()) mCanvas.convertTo(mBytes, CV_8UC3, 255);
+        return mBytes;
+    }
+
+    int mScale;
+    cv::Mat mCanvas, mBytes;
+};
+
+}  // namespace
+
+Image drawFeatures(const std::vector<PixelChain>& chains, int width, int height, int scale, const Image& background) {
+    Drawing drawing(width, height, scale, background);
+    for (const PixelChain& chain : chains) {
+        std::vector<glm::dvec2> points;
+        for (const glm::ivec2 p : chain.pixels) points.push_back(glm::dvec2(p) + .5);
+        if (chain.closed) points.push_back(points.front());
+        drawing.line(points, kFeatureColour, std::max(1, scale / 2));
+    }
+    return drawing.image();
+}
+
+Image drawInitialMesh(const ChannelMeshes& meshes, int scale, const Image& background) {
+    Drawing drawing(meshes.width, meshes.height, scale, background);
+    for (const bool features : {false, true})
+        for (uint32_t e = 0; e < meshes.mesh.edgeCapacity(); ++e) {
+            const HalfedgeId h = HalfedgeMesh::halfedge(EdgeId(e));
+            if (meshes.isFeature(EdgeId(e)) != features) continue;
+            const glm::dvec2 ends[] = {toPixels(meshes.positions[meshes.mesh.origin(h).index]),
+                                       toPixels(meshes.positions[meshes.mesh.target(h).index])};
+            drawing.line(ends, features ? kFeatureColour : kEdgeColour, features ? std::max(1, scale / 4) : 1);
+        }
+    return drawing.image();
+}
+
+Image drawPatches(const PatchMesh& mesh, Outline outline, int scale, const Image& background) {
+    Drawing drawing(mesh.width(), mesh.height(), scale, background);
+    for (const bool features : {false, true})
+        mesh.forEachEdge([&](EdgeId e) {
+            if (mesh.curve(e).feature != features) return;
+            const BezierCurve curve = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e)));
+            const int steps = outline == Outline::Curves ? 16 : 1;
+            std::vector<glm::dvec2> points;
+            for (int i = 0; i <= steps; ++i) points.push_back(curve.at(double(i) / steps));
+            drawing.line(points, features ? kFeatureColour : kEdgeColour, features ? std::max(1, scale / 2) : 1);
+        });
+    mesh.forEachVertex([&](VertexId v) { drawing.dot(toPixels(mesh.position(v)), .6 * scale, kVertexColour); });
+    return drawing.image();
+}
+
+Image residual(const Image& a, const Image& b, double gain) {
+    TESSERA_CHECK(a.width() == b.width() && a.height() == b.height() && a.channels() == b.channels());
+    Image result(a.width(), a.height(), 3);
+    for (int c = 0; c < 3; ++c)
+        for (size_t i = 0; i < a.planeSize(); ++i)
+            result.plane(c)[i] = float(std::clamp(.5 + gain * double(a.plane(c)[i] - b.plane(c)[i]), 0.0, 1.0));
+    return result;
+}
+
+}  // namespace tessera
