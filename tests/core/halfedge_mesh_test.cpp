@@ -1,5 +1,5 @@
-// Half-edge connectivity on meshes of a few triangles: building, collapsing, flipping, compacting, and whether
-// connectivityViolations() finds what is broken.
+// Half-edge connectivity on meshes of a few triangles: building, collapsing, flipping, compacting, and
+// whether connectivityViolations() finds what is broken.
 #include "core/mesh/halfedge_mesh.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,9 @@ HalfedgeMesh make(size_t vertices, const Triangles& triangles) {
     return HalfedgeMesh::fromTriangles(vertices, triangles);
 }
 
-HalfedgeMesh square() { return make(4, {{0, 1, 2}, {0, 2, 3}}); }
+HalfedgeMesh square() {
+    return make(4, {{0, 1, 2}, {0, 2, 3}});
+}
 
 // Vertex 0 inside a ring of the vertices 1 .. n.
 HalfedgeMesh fan(uint32_t n) {
@@ -138,8 +140,7 @@ TEST(Collapse, InteriorOntoRing) {
     // The edges 1-2 and 1-6 survive in place of 0-2 and 0-6.
     EXPECT_EQ(HalfedgeMesh::edge(done.merges[0].kept), HalfedgeMesh::edge(between(mesh, 1, 2)));
     EXPECT_EQ(HalfedgeMesh::edge(done.merges[1].kept), HalfedgeMesh::edge(between(mesh, 1, 6)));
-    for (const auto& merge : done.merges)
-        EXPECT_FALSE(mesh.alive(HalfedgeMesh::edge(merge.replaced)));
+    for (const auto& merge : done.merges) EXPECT_FALSE(mesh.alive(HalfedgeMesh::edge(merge.replaced)));
 }
 
 TEST(Collapse, RingOntoCentre) {
@@ -205,10 +206,11 @@ TEST(Collapse, LinkConditionAtValenceThree) {
 }
 
 TEST(Collapse, LinkConditionInside) {
-    // A triangle (0, 1, 2) with vertex 3 inside it, in a ring: 0-1 has the opposite corners 3 and, outside, 4; vertex 2
-    // is a further common neighbour.
-    HalfedgeMesh mesh = make(7, {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 5}, {0, 2, 6},
-                                 {0, 6, 4}, {1, 4, 5}, {2, 5, 6}});
+    // A triangle (0, 1, 2) with vertex 3 inside it, in a ring: 0-1 has the opposite corners 3 and, outside,
+    // 4; vertex 2 is a further common neighbour.
+    HalfedgeMesh mesh = make(
+        7,
+        {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 5}, {0, 2, 6}, {0, 6, 4}, {1, 4, 5}, {2, 5, 6}});
     ASSERT_THAT(connectivityViolations(mesh), IsEmpty());
     EXPECT_FALSE(mesh.canCollapse(between(mesh, 0, 1)));
     EXPECT_TRUE(mesh.canCollapse(between(mesh, 3, 1)));
@@ -219,13 +221,40 @@ TEST(Collapse, LinkConditionInside) {
     EXPECT_THAT(connectivityViolations(mesh), IsEmpty());
 }
 
-// The corner of a strip: its face's other two edges are both on the border, and would become an edge without a face.
+// The corner of a strip: its face's other two edges are both on the border, and would become an edge without
+// a face.
 TEST(Collapse, RefusesEdgesBesideAnEar) {
     const HalfedgeMesh mesh = make(5, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
     EXPECT_FALSE(mesh.canCollapse(between(mesh, 0, 2)));
     EXPECT_TRUE(mesh.canCollapse(between(mesh, 2, 3)));
-    // Edge 0-1 of the ear takes the whole ear away.
-    EXPECT_TRUE(mesh.canCollapse(between(mesh, 1, 0)));
+}
+
+// The tip of the ear moves onto either of its neighbours, from inside or outside, whichever edge survives.
+TEST(Collapse, TakesAnEarAway) {
+    for (const auto& [from, to] : {std::pair{1U, 0U}, {1U, 2U}, {0U, 1U}})
+        for (const bool first : {false, true})
+            for (const bool second : {false, true}) {
+                HalfedgeMesh mesh = make(5, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
+                ASSERT_TRUE(mesh.canCollapse(between(mesh, from, to)));
+                mesh.collapse(between(mesh, from, to), {first, second});
+                EXPECT_THAT(connectivityViolations(mesh), IsEmpty());
+                const uint32_t left = from == 0 ? 1 : 0;
+                const Triangles expected =
+                    left == 0 ? Triangles{{0, 2, 3}, {0, 3, 4}} : Triangles{{1, 2, 3}, {1, 3, 4}};
+                EXPECT_EQ(facesOf(mesh), expected);
+            }
+}
+
+// Vertex 1 of the fan lies on the border, and so do its edges 1-2 and 1-5 that give way to those of the
+// centre.
+TEST(Collapse, KeepOriginWhereTheLostEdgesLieOnTheBorder) {
+    for (const bool first : {false, true})
+        for (const bool second : {false, true}) {
+            HalfedgeMesh mesh = fan(5);
+            mesh.collapse(between(mesh, 0, 1), {first, second});
+            EXPECT_THAT(connectivityViolations(mesh), IsEmpty());
+            EXPECT_EQ(facesOf(mesh), (Triangles{{1, 2, 3}, {1, 3, 4}, {1, 4, 5}}));
+        }
 }
 
 TEST(Collapse, KeepOriginKeepsTheEdgesOfTheVertexThatGoes) {
@@ -330,7 +359,8 @@ TEST(Compacted, DropsDeletedElementsAndTellsTheOldIds) {
         for (size_t k = 0; k < 3; ++k) EXPECT_EQ(compact.oldVertex[now[k].index], before[k]);
     }
     for (uint32_t e = 0; e < compact.oldEdge.size(); ++e) {
-        const HalfedgeId now = HalfedgeMesh::halfedge(EdgeId(e)), old = HalfedgeMesh::halfedge(compact.oldEdge[e]);
+        const HalfedgeId now = HalfedgeMesh::halfedge(EdgeId(e)),
+                         old = HalfedgeMesh::halfedge(compact.oldEdge[e]);
         EXPECT_EQ(compact.oldVertex[compact.mesh.origin(now).index], mesh.origin(old));
         EXPECT_EQ(compact.oldVertex[compact.mesh.target(now).index], mesh.target(old));
     }
@@ -364,10 +394,12 @@ TEST(HalfedgeMesh, RandomLegalOperationsKeepTheInvariants) {
     }
 }
 
-// collapse() relies on canCollapse(); what it makes of a collapse that is not allowed is what the comparer must find.
+// collapse() relies on canCollapse(); what it makes of a collapse that is not allowed is what the comparer
+// must find.
 TEST(ConnectivityViolations, FindsTwoEdgesBetweenTwoVertices) {
-    HalfedgeMesh mesh = make(7, {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 5}, {0, 2, 6},
-                                 {0, 6, 4}, {1, 4, 5}, {2, 5, 6}});
+    HalfedgeMesh mesh = make(
+        7,
+        {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 5}, {0, 2, 6}, {0, 6, 4}, {1, 4, 5}, {2, 5, 6}});
     ASSERT_FALSE(mesh.canCollapse(between(mesh, 0, 1)));
     mesh.collapse(between(mesh, 0, 1));
     EXPECT_THAT(connectivityViolations(mesh), ::testing::Contains(HasSubstr("two edges to one neighbour")));

@@ -24,7 +24,8 @@ LatticeTriangle patchOf(Place&& place) {
 
 // The straight patch with these corners; exact on the lattice where their coordinates are multiples of 3 px.
 LatticeTriangle affine(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
-    return patchOf([&](int i, int j, int k) { return (double(i) * a + double(j) * b + double(k) * c) / 3.0; });
+    return patchOf(
+        [&](int i, int j, int k) { return (double(i) * a + double(j) * b + double(k) * c) / 3.0; });
 }
 
 // x depends on v alone, as the cubic with these control values, and y on w alone: det J = x'(v) y'(w).
@@ -95,11 +96,12 @@ TEST(Certified, StraightTriangles) {
     EXPECT_EQ(minBernstein(affine({0, 0}, {0, 9}, {9, 0})), -1);
 }
 
-// x' has the Bernstein coefficients 3 (4, -2, 4), a quarter of whose sum with weights 1, 2, 1 is its least value, 1 * 3.
+// x' has the Bernstein coefficients 3 (4, -3, 4); its least value, in the middle, is a quarter of (1, 2, 1)
+// times those.
 TEST(Certified, DecidesBySubdivisionWhereCoefficientsAreMixed) {
-    const LatticeTriangle t = productPatch({0, 4, 2, 6});
+    const LatticeTriangle t = productPatch({0, 4, 1, 5});
     EXPECT_LT(minBernstein(t), 0);
-    EXPECT_GT(smallestSample(t, 40), .4);
+    EXPECT_NEAR(smallestSample(t, 40), 1.5 / 5, 1e-12);
     EXPECT_TRUE(certified(t));
 }
 
@@ -123,7 +125,8 @@ TEST(Certified, RefusesAFoldByASideBentOverTheOthers) {
     EXPECT_FALSE(certified(t));
 }
 
-// The exact answer never says yes where a sample says no; and says yes wherever the determinant is well above zero.
+// The exact answer never says yes where a sample says no; and says yes wherever the determinant is well above
+// zero.
 TEST(Certified, AgreesWithDenseSamples) {
     std::mt19937 random(3);
     int yes = 0, no = 0, subdivided = 0;
@@ -140,7 +143,7 @@ TEST(Certified, AgreesWithDenseSamples) {
         }
     }
     EXPECT_GT(yes, 300);
-    EXPECT_GT(no, 300);
+    EXPECT_GT(no, 100);
     EXPECT_GT(subdivided, 10);
 }
 
@@ -174,7 +177,7 @@ TEST(CertifiedInterior, FallsBackToTheDefault) {
 TEST(CertifiedInterior, FindsAPointWhereTheDefaultFails) {
     std::mt19937 random(11);
     int saved = 0, none = 0;
-    for (int round = 0; round < 1000; ++round) {
+    for (int round = 0; round < 20000; ++round) {
         LatticeTriangle t = randomPatch(random, 5);
         t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
         if (certified(t)) continue;
