@@ -6,6 +6,7 @@
 #include "app/cli_compare.h"
 #include "app/cli_info.h"
 #include "app/cli_render.h"
+#include "app/cli_stages.h"
 #include "app/cli_support.h"
 #include "app/cli_validate.h"
 #include "app/cli_vectorize.h"
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
     cli::addInfoCommand(app, exitCode);
     cli::addValidateCommand(app, exitCode);
     cli::addCompareCommand(app, exitCode);
+    cli::addStagesCommand(app, exitCode);
     // CLI11 would only say that a command is missing.
     const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
     if (argc > 1 && argv[1][0] != '-' &&

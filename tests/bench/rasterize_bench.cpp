@@ -62,8 +62,8 @@ void benchRenderers() {
     for (const int threads : {1, 2})
         withThreads(threads, [&] {
             std::printf(" %d thread%s\n", threads, threads > 1 ? "s" : "");
-            report("fast, curved", shortest(40, [&] { (void)rasterize(curved, view); }));
-            report("fast, straight", shortest(40, [&] { (void)rasterize(straight, view); }));
+            report("fast, curved", shortest(200, [&] { (void)rasterize(curved, view); }));
+            report("fast, straight", shortest(200, [&] { (void)rasterize(straight, view); }));
             report("fast, curved, owners alone", shortest(20, [&] { (void)locatePixels(curved, view); }));
             report("fast, curved, 4 samples", shortest(5, [&] { (void)rasterize(curved, view, {4}); }));
             View zoomed = view;

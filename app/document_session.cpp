@@ -1,0 +1,54 @@
+// See document_session.h.
+#include "app/document_session.h"
+
+#include <QDir>
+#include <QFileInfo>
+#include <utility>
+
+namespace tessera {
+
+DocumentSession::DocumentSession(Document document, Photo photo, QString path, QString photoPath,
+                                 QObject* parent)
+    : QObject(parent),
+      mDocument(std::move(document)),
+      mPhoto(std::move(photo)),
+      mPath(std::move(path)),
+      mPhotoPath(std::move(photoPath)) {}
+
+int DocumentSession::width() const {
+    return hasMesh() ? mDocument.mesh.width() : mPhoto.image ? mPhoto.image->width() : 0;
+}
+
+int DocumentSession::height() const {
+    return hasMesh() ? mDocument.mesh.height() : mPhoto.image ? mPhoto.image->height() : 0;
+}
+
+bool DocumentSession::hasAlpha() const {
+    return hasMesh() ? mDocument.mesh.channels() == 4 : mPhoto.image && mPhoto.image->hasAlpha();
+}
+
+QString DocumentSession::displayName() const {
+    return QFileInfo(mPath.isEmpty() ? mPhotoPath : mPath).fileName();
+}
+
+QString DocumentSession::suggestedPath(const QString& suffix) const {
+    const QFileInfo origin(mPath.isEmpty() ? mPhotoPath : mPath);
+    return origin.dir().filePath(origin.completeBaseName() + '.' + suffix);
+}
+
+void DocumentSession::markSaved(uint64_t revision, const QString& path, std::optional<double> colourStep) {
+    mSavedRevision = revision;
+    mPath = path;
+    // Kept for ever, as the format asks; a state that has moved on meanwhile chooses its own at its first
+    // saving.
+    if (revision == mRevision) mDocument.colourStep = colourStep;
+    emit changed({.saved = true});
+}
+
+void DocumentSession::swapState(Document& document, uint64_t& revision) {
+    std::swap(mDocument, document);
+    std::swap(mRevision, revision);
+    emit changed({.mesh = true, .saved = true});
+}
+
+}  // namespace tessera

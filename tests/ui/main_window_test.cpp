@@ -1,0 +1,379 @@
+// The window through real events: what a person does with mouse, wheel and keys, and what they then see.
+#include "ui/main_window.h"
+
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QFile>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QPainter>
+#include <QPushButton>
+#include <QTemporaryDir>
+#include <QTest>
+#include <QTimer>
+#include <QWheelEvent>
+#include <cmath>
+
+#include "core/export/rasterize.h"
+#include "ui/action_table.h"
+#include "ui/application.h"
+#include "ui/canvas_widget.h"
+#include "ui/message_bar.h"
+#include "ui/status_bar.h"
+#include "ui/vectorize_panel.h"
+
+namespace tessera {
+namespace {
+
+constexpr int kWaitMs = 120'000;
+constexpr int kPatches = 60;
+
+// A disk on a slope: one feature, and nothing that a few patches could not hold.
+QImage disk(int width, int height) {
+    QImage image(width, height, QImage::Format_RGB32);
+    QPainter painter(&image);
+    painter.setRenderHint(QPainter::Antialiasing);
+    QLinearGradient slope(0, 0, width, height);
+    slope.setColorAt(0, QColor(30, 60, 110));
+    slope.setColorAt(1, QColor(90, 150, 190));
+    painter.fillRect(image.rect(), slope);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(QColor(240, 180, 60));
+    painter.drawEllipse(QPointF(width * .5, height * .5), height * .3, height * .3);
+    return image;
+}
+
+class MainWindowTest : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        photo = folder.filePath("disk.png");
+        ASSERT_TRUE(disk(160, 120).save(photo));
+        window = std::make_unique<MainWindow>();
+        window->resize(1000, 700);
+        window->show();
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(window.get()));
+        canvas().setFocus();
+    }
+
+    CanvasWidget& canvas() { return window->canvas(); }
+    Workspace& workspace() { return window->workspace(); }
+    DocumentSession* session() { return workspace().session(); }
+    QAction* action(ActionId id) { return window->actions()[id]; }
+
+    bool idle() {
+        return QTest::qWaitFor([&] { return !workspace().currentJob(); }, kWaitMs);
+    }
+    bool settled() {
+        return QTest::qWaitFor([&] { return canvas().settled(); }, kWaitMs);
+    }
+    void openPhoto() {
+        window->open(photo);
+        ASSERT_TRUE(idle());
+        ASSERT_NE(session(), nullptr) << window->messages().text().toStdString();
+    }
+    void vectorize() {
+        window->panel().setPatches(kPatches);
+        QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+        ASSERT_TRUE(workspace().running(JobKind::Vectorize));
+        ASSERT_TRUE(idle());
+        ASSERT_TRUE(session()->hasMesh()) << window->messages().text().toStdString();
+        ASSERT_TRUE(settled());
+    }
+    QImage grab() { return canvas().grab().toImage(); }
+    void wheel(QPointF at, int notches, Qt::KeyboardModifiers modifiers) {
+        QWheelEvent event(at, canvas().mapToGlobal(at), {}, {0, 120 * notches}, Qt::NoButton, modifiers,
+                          Qt::NoScrollPhase, false);
+        QApplication::sendEvent(&canvas(), &event);
+    }
+    void drop(const QString& path) {
+        QMimeData data;
+        data.setUrls({QUrl::fromLocalFile(path)});
+        QDragEnterEvent enter({200, 200}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window.get(), &enter);
+        ASSERT_TRUE(enter.isAccepted());
+        QDropEvent event({200, 200}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window.get(), &event);
+    }
+    // Presses a button of the next question.
+    void answer(QMessageBox::StandardButton button) {
+        QTimer::singleShot(100, window.get(), [button] {
+            auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+            ASSERT_NE(box, nullptr);
+            QTest::mouseClick(box->button(button), Qt::LeftButton);
+        });
+    }
+
+    QTemporaryDir folder;
+    QString photo;
+    std::unique_ptr<MainWindow> window;
+};
+
+// Mean difference of two pictures of the same size, 0..255.
+double difference(const QImage& a, const QImage& b) {
+    EXPECT_EQ(a.size(), b.size());
+    double sum = 0;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x) {
+            const QColor p = a.pixelColor(x, y), q = b.pixelColor(x, y);
+            sum +=
+                std::abs(p.red() - q.red()) + std::abs(p.green() - q.green()) + std::abs(p.blue() - q.blue());
+        }
+    return sum / (3. * a.width() * a.height());
+}
+
+TEST_F(MainWindowTest, ShowsThePhotoPixelForPixelAt100Percent) {
+    openPhoto();
+    EXPECT_FALSE(session()->hasMesh());
+    EXPECT_FALSE(session()->modified());
+    QTest::keyClick(&canvas(), Qt::Key_1, Qt::ControlModifier);
+    EXPECT_EQ(canvas().view().scale(), 1);
+    const QImage shown = grab().copy(QRect(canvas().view().origin().toPoint(), QSize(160, 120)));
+    EXPECT_EQ(difference(shown, QImage(photo)), 0);
+}
+
+TEST_F(MainWindowTest, VectorizesInTheBackgroundAndUndoes) {
+    openPhoto();
+    window->panel().setPatches(kPatches);
+    QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+    EXPECT_FALSE(session()->hasMesh()) << "vectorize() must return before the work is done";
+    EXPECT_FALSE(window->status().jobText().isEmpty());
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(window->status().jobText().isEmpty());
+    ASSERT_TRUE(session()->hasMesh());
+    EXPECT_TRUE(session()->modified());
+    EXPECT_TRUE(window->isWindowModified());
+    EXPECT_TRUE(session()->document().difference.has_value());
+    const size_t patches = session()->document().mesh.patchCount();
+    QTest::keyClick(&canvas(), Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_FALSE(session()->hasMesh());
+    EXPECT_FALSE(window->isWindowModified());
+    QTest::keyClick(&canvas(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    EXPECT_EQ(session()->document().mesh.patchCount(), patches);
+}
+
+TEST_F(MainWindowTest, ShowsTheVectorImageAsTheRendererDrawsIt) {
+    openPhoto();
+    vectorize();
+    QTest::keyClick(&canvas(), Qt::Key_1, Qt::ControlModifier);
+    ASSERT_TRUE(settled());
+    const PatchMesh& mesh = session()->document().mesh;
+    const auto expected = rasterize(mesh, wholePicture(mesh, {1, 1}), {.samples = kPictureSamples});
+    ASSERT_TRUE(expected.has_value());
+    const QImage shown = grab().copy(QRect(canvas().view().origin().toPoint(), QSize(160, 120)));
+    EXPECT_EQ(difference(shown, toQImage(*expected).convertToFormat(QImage::Format_RGB32)), 0);
+    EXPECT_LT(difference(shown, QImage(photo)), 12) << "it does not look like the photo";
+}
+
+TEST_F(MainWindowTest, CtrlWheelZoomsAtTheCursor) {
+    openPhoto();
+    vectorize();
+    const QPointF cursor(413, 287);
+    const QPointF before = canvas().toImage(cursor);
+    const double scale = canvas().view().scale();
+    for (int i = 0; i < 9; ++i) wheel(cursor, 1, Qt::ControlModifier);
+    EXPECT_GT(canvas().view().scale(), 4 * scale);
+    const QPointF after = canvas().toImage(cursor);
+    EXPECT_NEAR(after.x(), before.x(), 1e-6);
+    EXPECT_NEAR(after.y(), before.y(), 1e-6);
+    ASSERT_TRUE(settled());
+    for (int i = 0; i < 80; ++i) wheel(cursor, 1, Qt::ControlModifier);
+    EXPECT_EQ(canvas().view().scale(), 1000);
+    ASSERT_TRUE(settled());
+    for (int i = 0; i < 160; ++i) wheel(cursor, -1, Qt::ControlModifier);
+    EXPECT_EQ(canvas().view().scale(), .01);
+    QTest::keyClick(&canvas(), Qt::Key_0, Qt::ControlModifier);
+    EXPECT_EQ(canvas().view().scale(), scale);
+}
+
+TEST_F(MainWindowTest, WheelScrollsAndDragsPan) {
+    openPhoto();
+    for (int i = 0; i < 12; ++i) wheel({400, 300}, 1, Qt::ControlModifier);
+    QPointF origin = canvas().view().origin();
+    wheel({400, 300}, -1, Qt::NoModifier);
+    EXPECT_EQ(canvas().view().origin().x(), origin.x());
+    EXPECT_LT(canvas().view().origin().y(), origin.y());
+    origin = canvas().view().origin();
+    QTest::mousePress(&canvas(), Qt::MiddleButton, {}, {300, 300});
+    QTest::mouseMove(&canvas(), {330, 310});
+    QTest::mouseRelease(&canvas(), Qt::MiddleButton, {}, {330, 310});
+    EXPECT_EQ(canvas().view().origin(), origin + QPointF(30, 10));
+    QTest::keyPress(&canvas(), Qt::Key_Space);
+    QTest::mousePress(&canvas(), Qt::LeftButton, {}, {300, 300});
+    QTest::mouseMove(&canvas(), {290, 280});
+    QTest::mouseRelease(&canvas(), Qt::LeftButton, {}, {290, 280});
+    QTest::keyRelease(&canvas(), Qt::Key_Space);
+    EXPECT_EQ(canvas().view().origin(), origin + QPointF(20, -10));
+}
+
+TEST_F(MainWindowTest, HoldingOShowsTheOriginal) {
+    openPhoto();
+    QTest::keyClick(&canvas(), Qt::Key_1, Qt::ControlModifier);
+    const QImage original = grab();
+    vectorize();
+    const QImage vector = grab();
+    EXPECT_GT(difference(vector, original), 0);
+    QTest::keyPress(&canvas(), Qt::Key_O);
+    EXPECT_EQ(difference(grab(), original), 0);
+    QTest::keyRelease(&canvas(), Qt::Key_O);
+    EXPECT_EQ(difference(grab(), vector), 0);
+}
+
+TEST_F(MainWindowTest, OverlaysCanBeSeenAndHidden) {
+    openPhoto();
+    vectorize();
+    for (int i = 0; i < 8; ++i) wheel({400, 300}, 1, Qt::ControlModifier);
+    ASSERT_TRUE(settled());
+    const QImage plain = grab();
+    for (const auto& [key, id] :
+         {std::pair{Qt::Key_1, ActionId::ShowFeatures}, std::pair{Qt::Key_2, ActionId::ShowEdges},
+          std::pair{Qt::Key_3, ActionId::ShowControlPoints}}) {
+        action(id)->setChecked(false);
+        const QImage without = grab();
+        EXPECT_EQ(difference(without, plain), 0);
+        QTest::keyClick(&canvas(), key, Qt::AltModifier);
+        EXPECT_TRUE(action(id)->isChecked());
+        EXPECT_GT(difference(grab(), without), 0) << action(id)->objectName().toStdString();
+        QTest::keyClick(&canvas(), key, Qt::AltModifier);
+        EXPECT_FALSE(action(id)->isChecked());
+    }
+    EXPECT_EQ(difference(grab(), plain), 0);
+}
+
+TEST_F(MainWindowTest, SavesAndOpensAgain) {
+    openPhoto();
+    vectorize();
+    const size_t patches = session()->document().mesh.patchCount();
+    const QString path = folder.filePath("disk.tessera");
+    window->saveTo(path);
+    ASSERT_TRUE(idle());
+    ASSERT_TRUE(QFile::exists(path)) << window->messages().text().toStdString();
+    EXPECT_FALSE(session()->modified());
+    EXPECT_TRUE(window->windowTitle().startsWith("disk.tessera"));
+    const QImage before = grab();
+    window->open(path);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(session()->path(), path);
+    EXPECT_FALSE(session()->modified());
+    EXPECT_EQ(session()->document().mesh.patchCount(), patches);
+    EXPECT_TRUE(session()->photo().image) << "the photo is kept in the file";
+    ASSERT_TRUE(settled());
+    EXPECT_LT(difference(grab(), before), .3) << "the file holds colours to a tenth of a level";
+}
+
+TEST_F(MainWindowTest, AFailedSaveSaysSoAndKeepsTheChanges) {
+    openPhoto();
+    vectorize();
+    window->saveTo(folder.filePath("no/such/folder/disk.tessera"));
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(window->messages().text().isEmpty());
+    EXPECT_TRUE(window->messages().showsError());
+    EXPECT_TRUE(session()->modified());
+}
+
+TEST_F(MainWindowTest, CancelLeavesTheDocumentUntouched) {
+    // Large enough that the work cannot be over before the button is pressed.
+    ASSERT_TRUE(disk(1200, 900).save(photo));
+    openPhoto();
+    const uint64_t revision = session()->revision();
+    QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+    ASSERT_TRUE(workspace().running(JobKind::Vectorize));
+    auto* cancel = window->findChild<QPushButton*>("cancelJob");
+    ASSERT_TRUE(QTest::qWaitFor([&] { return cancel->isVisible(); }, kWaitMs));
+    QTest::mouseClick(cancel, Qt::LeftButton);
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(session()->hasMesh());
+    EXPECT_EQ(session()->revision(), revision);
+    EXPECT_FALSE(session()->modified());
+    EXPECT_EQ(session()->history().count(), 0);
+    EXPECT_TRUE(window->messages().text().isEmpty()) << "what one asked for is no error";
+}
+
+TEST_F(MainWindowTest, OpensWhatIsDropped) {
+    drop(photo);
+    ASSERT_TRUE(idle());
+    ASSERT_NE(session(), nullptr);
+    EXPECT_EQ(session()->width(), 160);
+    EXPECT_TRUE(window->messages().text().isEmpty());
+}
+
+TEST_F(MainWindowTest, DroppedGarbageIsAMessageAndNoMore) {
+    openPhoto();
+    DocumentSession* const before = session();
+    const QString path = folder.filePath("garbage.png");
+    QFile file(path);
+    ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+    file.write(QByteArray(5000, '\x5a'));
+    file.close();
+    drop(path);
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(window->messages().text().contains("garbage.png")) << window->messages().text().toStdString();
+    EXPECT_TRUE(window->messages().showsError());
+    EXPECT_EQ(session(), before);
+    EXPECT_EQ(QApplication::activeModalWidget(), nullptr);
+}
+
+TEST_F(MainWindowTest, AsksBeforeChangesAreLost) {
+    openPhoto();
+    vectorize();
+    answer(QMessageBox::Cancel);
+    EXPECT_FALSE(window->close());
+    EXPECT_TRUE(window->isVisible());
+    answer(QMessageBox::Cancel);
+    window->open(photo);
+    EXPECT_FALSE(workspace().currentJob());
+    answer(QMessageBox::Discard);
+    window->close();
+    EXPECT_FALSE(window->isVisible());
+}
+
+TEST_F(MainWindowTest, ExportsAtTheChosenScale) {
+    openPhoto();
+    vectorize();
+    const QString path = folder.filePath("large.png");
+    workspace().exportPicture({.path = path, .scale = 2.5, .options = {}});
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(QImage(path).size(), QSize(400, 300)) << window->messages().text().toStdString();
+    EXPECT_TRUE(session()->modified()) << "an export is not a save";
+}
+
+TEST_F(MainWindowTest, ReadsTheColourUnderTheCursor) {
+    openPhoto();
+    std::optional<QPointF> at;
+    QColor colour;
+    QObject::connect(&canvas(), &CanvasWidget::cursorMoved, [&](std::optional<QPointF> image, QColor shown) {
+        at = image;
+        colour = shown;
+    });
+    QTest::mouseMove(&canvas(), canvas().toWidget({80.5, 60.5}).toPoint());
+    ASSERT_TRUE(at.has_value());
+    EXPECT_EQ(colour, QColor(240, 180, 60));
+}
+
+TEST_F(MainWindowTest, VectorizesAPhotograph) {
+    const QString path = QString(TESSERA_TEST_IMAGES) + "/kodak/kodim23.png";
+    if (!QFile::exists(path)) GTEST_SKIP() << "no photographs: " << path.toStdString() << " does not exist";
+    window->open(path);
+    window->vectorizeWhenOpen();
+    ASSERT_TRUE(QTest::qWaitFor(
+        [&] { return session() && session()->hasMesh() && !workspace().currentJob(); }, kWaitMs));
+    ASSERT_TRUE(settled());
+    EXPECT_GT(session()->document().mesh.patchCount(), 10);
+    ASSERT_TRUE(session()->document().difference.has_value());
+    EXPECT_LT(session()->document().difference->mae, 20);
+}
+
+}  // namespace
+}  // namespace tessera
+
+int main(int argc, char** argv) {
+    ::testing::InitGoogleTest(&argc, argv);
+    // The user's own settings are neither read nor changed.
+    const QTemporaryDir configuration;
+    qputenv("XDG_CONFIG_HOME", configuration.path().toUtf8());
+    QApplication application(argc, argv);
+    tessera::setUpApplication(application);
+    return RUN_ALL_TESTS();
+}

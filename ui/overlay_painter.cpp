@@ -1,0 +1,206 @@
+// See overlay_painter.h.
+#include "ui/overlay_painter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera {
+
+namespace {
+
+// Two tones: the halo parts the line from a light ground, the core from a dark one.
+struct LineStyle {
+    QColor core;
+    QColor halo;
+    double corePx;
+    double haloPx;
+};
+
+const LineStyle kFeatureStyle{QColor(255, 214, 92), QColor(20, 14, 0, 190), 1.6, 4.0};
+const LineStyle kEdgeStyle{QColor(255, 255, 255, 205), QColor(0, 0, 0, 120), 1.0, 2.6};
+const LineStyle kHandleStyle{QColor(120, 205, 255), QColor(0, 20, 34, 170), 1.0, 2.6};
+
+// Below this mean size on the screen, edges lose their halo: halos would cover the picture.
+constexpr double kHaloFromPx = 14;
+// Control points of an edge appear where it is this long, so that they never hide what they belong to.
+constexpr double kVertexFromPx = 26;
+constexpr double kHandleFromPx = 56;
+constexpr double kVertexSizePx = 7;
+constexpr double kHandleSizePx = 5.5;
+const QColor kMarkOutline(10, 12, 16);
+// A curve is drawn as segments of about this length.
+constexpr double kSegmentPx = 7;
+constexpr double kMaxSegments = 64;
+
+QPointF toPoint(glm::dvec2 p) {
+    return {p.x, p.y};
+}
+
+double length(QPointF p) {
+    return std::hypot(p.x(), p.y());
+}
+
+// Whether the inner control points leave the chord by less than a lattice step or two.
+bool isStraight(const std::array<QPointF, 4>& p) {
+    const QPointF chord = p[3] - p[0];
+    const double size = length(chord);
+    if (size == 0) return false;
+    const auto offset = [&](QPointF q) {
+        return std::abs(chord.x() * (q.y() - p[0].y()) - chord.y() * (q.x() - p[0].x())) / size;
+    };
+    return std::max(offset(p[1]), offset(p[2])) < .01;
+}
+
+QPointF at(const std::array<QPointF, 4>& p, double t) {
+    const double s = 1 - t;
+    return p[0] * (s * s * s) + p[1] * (3 * s * s * t) + p[2] * (3 * s * t * t) + p[3] * (t * t * t);
+}
+
+// Keeps a segment's coordinates within what the rasterizer takes, at deep zoom: false where it misses `clip`.
+bool clipSegment(QPointF& a, QPointF& b, const QRectF& clip) {
+    const QPointF d = b - a;
+    double t0 = 0, t1 = 1;
+    const auto cut = [&](double start, double delta, double low, double high) {
+        if (delta == 0) return start >= low && start <= high;
+        double in = (low - start) / delta, out = (high - start) / delta;
+        if (in > out) std::swap(in, out);
+        t0 = std::max(t0, in);
+        t1 = std::min(t1, out);
+        return t0 <= t1;
+    };
+    if (!cut(a.x(), d.x(), clip.left(), clip.right()) || !cut(a.y(), d.y(), clip.top(), clip.bottom()))
+        return false;
+    b = a + d * t1;
+    a = a + d * t0;
+    return true;
+}
+
+void appendSegment(std::vector<QLineF>& lines, QPointF a, QPointF b, const QRectF& clip) {
+    if (clipSegment(a, b, clip)) lines.emplace_back(a, b);
+}
+
+void drawLines(QPainter& painter, const std::vector<QLineF>& lines, const QColor& colour, double width) {
+    if (lines.empty()) return;
+    painter.setPen(QPen(colour, width, Qt::SolidLine, Qt::RoundCap));
+    painter.drawLines(lines.data(), int(lines.size()));
+}
+
+void drawTwoTone(QPainter& painter, const std::vector<QLineF>& lines, const LineStyle& style,
+                 double pixelRatio, bool halo) {
+    if (halo) drawLines(painter, lines, style.halo, style.haloPx * pixelRatio);
+    drawLines(painter, lines, style.core, style.corePx * pixelRatio);
+}
+
+QRectF markAt(QPointF centre, double size) {
+    return {centre.x() - size / 2, centre.y() - size / 2, size, size};
+}
+
+}  // namespace
+
+OverlayPainter::OverlayPainter(const PatchMesh& mesh) {
+    mCurves.reserve(mesh.connectivity().edgeCount());
+    mesh.forEachEdge([&](EdgeId e) {
+        const BezierCurve curve = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e)));
+        Curve shown;
+        double left = curve.p[0].x, right = left, top = curve.p[0].y, bottom = top;
+        for (size_t i = 0; i < 4; ++i) {
+            shown.p[i] = toPoint(curve.p[i]);
+            left = std::min(left, curve.p[i].x);
+            right = std::max(right, curve.p[i].x);
+            top = std::min(top, curve.p[i].y);
+            bottom = std::max(bottom, curve.p[i].y);
+        }
+        shown.box = QRectF(QPointF(left, top), QPointF(right, bottom));
+        shown.feature = mesh.curve(e).feature;
+        shown.straight = isStraight(shown.p);
+        mFeatureCount += shown.feature ? 1 : 0;
+        mCurves.push_back(shown);
+    });
+}
+
+std::vector<OverlayPainter::Shown> OverlayPainter::shown(const ViewTransform& view,
+                                                         const QRectF& visible) const {
+    const QRectF window(view.toImage(visible.topLeft()), view.toImage(visible.bottomRight()));
+    std::vector<Shown> result;
+    for (const Curve& curve : mCurves) {
+        // Not QRectF::intersects: it takes a box without an area (a straight edge of the border) for empty.
+        if (curve.box.left() > window.right() || curve.box.right() < window.left() ||
+            curve.box.top() > window.bottom() || curve.box.bottom() < window.top())
+            continue;
+        Shown shown{.p = {}, .feature = curve.feature, .straight = curve.straight};
+        for (size_t i = 0; i < 4; ++i) shown.p[i] = view.toScreen(curve.p[i]);
+        shown.sizePx = length(shown.p[3] - shown.p[0]);
+        result.push_back(shown);
+    }
+    return result;
+}
+
+void OverlayPainter::paint(QPainter& painter, const ViewTransform& view, const QRectF& visible,
+                           double pixelRatio, const OverlayOptions& options) const {
+    if (!options.any()) return;
+    const double margin = 2 * kVertexSizePx * pixelRatio;
+    const QRectF clip = visible.adjusted(-margin, -margin, margin, margin);
+    const std::vector<Shown> edges = shown(view, clip);
+    if (edges.empty()) return;
+    painter.save();
+    painter.setRenderHint(QPainter::Antialiasing);
+    paintCurves(painter, edges, clip, pixelRatio, options);
+    if (options.controlPoints) paintControlPoints(painter, edges, clip, pixelRatio);
+    painter.restore();
+}
+
+void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
+                                 double pixelRatio, const OverlayOptions& options) {
+    std::vector<QLineF> plain, features;
+    double sizeSum = 0;
+    for (const Shown& edge : edges) {
+        sizeSum += edge.sizePx;
+        if (edge.feature && options.features)
+            appendCurve(features, edge, clip, pixelRatio);
+        else if (options.edges)
+            appendCurve(plain, edge, clip, pixelRatio);
+    }
+    const double meanPx = sizeSum / double(edges.size()) / pixelRatio;
+    drawTwoTone(painter, plain, kEdgeStyle, pixelRatio, meanPx > kHaloFromPx);
+    drawTwoTone(painter, features, kFeatureStyle, pixelRatio, true);
+}
+
+void OverlayPainter::appendCurve(std::vector<QLineF>& lines, const Shown& edge, const QRectF& clip,
+                                 double pixelRatio) {
+    const auto& p = edge.p;
+    const double reach = length(p[1] - p[0]) + length(p[2] - p[1]) + length(p[3] - p[2]);
+    const int n = edge.straight ? 1 : int(std::clamp(reach / (kSegmentPx * pixelRatio), 2.0, kMaxSegments));
+    QPointF last = p[0];
+    for (int i = 1; i <= n; ++i) {
+        const QPointF next = i == n ? p[3] : at(p, double(i) / n);
+        appendSegment(lines, last, next, clip);
+        last = next;
+    }
+}
+
+void OverlayPainter::paintControlPoints(QPainter& painter, const std::vector<Shown>& edges,
+                                        const QRectF& clip, double pixelRatio) {
+    std::vector<QLineF> lines;
+    std::vector<QPointF> handles, vertices;
+    for (const Shown& edge : edges) {
+        for (const auto& [end, inner] : {std::pair{edge.p[0], edge.p[1]}, std::pair{edge.p[3], edge.p[2]}}) {
+            if (edge.sizePx >= kVertexFromPx * pixelRatio && clip.contains(end)) vertices.push_back(end);
+            if (edge.sizePx < kHandleFromPx * pixelRatio) continue;
+            appendSegment(lines, end, inner, clip);
+            if (clip.contains(inner)) handles.push_back(inner);
+        }
+    }
+    // Each vertex once, though every edge around it names it.
+    std::sort(vertices.begin(), vertices.end(),
+              [](QPointF a, QPointF b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+
+    drawTwoTone(painter, lines, kHandleStyle, pixelRatio, true);
+    painter.setPen(QPen(kMarkOutline, 1.4 * pixelRatio));
+    painter.setBrush(kHandleStyle.core);
+    for (const QPointF handle : handles) painter.drawEllipse(markAt(handle, kHandleSizePx * pixelRatio));
+    painter.setBrush(Qt::white);
+    for (const QPointF vertex : vertices) painter.drawRect(markAt(vertex, kVertexSizePx * pixelRatio));
+}
+
+}  // namespace tessera

@@ -1,0 +1,66 @@
+// Draws what lies over the picture: features, patch edges and control points, of constant size on the screen
+// and legible on any colour.
+#pragma once
+
+#include <QPainter>
+#include <array>
+#include <vector>
+
+#include "core/mesh/patch_mesh.h"
+#include "ui/view_transform.h"
+
+namespace tessera {
+
+struct OverlayOptions {
+    bool features = false;
+    bool edges = false;
+    bool controlPoints = false;
+
+    bool any() const { return features || edges || controlPoints; }
+    bool operator==(const OverlayOptions&) const = default;
+};
+
+// The curves of one state of a mesh in flat arrays, made once, so that a frame costs a pass over the boxes
+// and the drawing of what is in view.
+class OverlayPainter {
+  public:
+    OverlayPainter() = default;
+    explicit OverlayPainter(const PatchMesh& mesh);
+
+    // Paints in device pixels: the painter's transform takes them as they are. `pixelRatio` is how many of
+    // them a line of "one pixel" is wide; `visible` is the part of the screen to paint.
+    void paint(QPainter& painter, const ViewTransform& view, const QRectF& visible, double pixelRatio,
+               const OverlayOptions& options) const;
+
+    size_t featureCount() const { return mFeatureCount; }
+
+  private:
+    // One edge's cubic, in image pixels.
+    struct Curve {
+        std::array<QPointF, 4> p;
+        QRectF box;
+        bool feature = false;
+        bool straight = false;
+    };
+    // An edge in view, on the screen.
+    struct Shown {
+        std::array<QPointF, 4> p;
+        bool feature = false;
+        bool straight = false;
+        double sizePx = 0;
+    };
+
+    std::vector<Shown> shown(const ViewTransform& view, const QRectF& visible) const;
+    static void paintCurves(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
+                            double pixelRatio, const OverlayOptions& options);
+    static void paintControlPoints(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
+                                   double pixelRatio);
+    // Flattens an edge into segments; a segment that misses `clip` is left out.
+    static void appendCurve(std::vector<QLineF>& lines, const Shown& edge, const QRectF& clip,
+                            double pixelRatio);
+
+    std::vector<Curve> mCurves;
+    size_t mFeatureCount = 0;
+};
+
+}  // namespace tessera

@@ -1,0 +1,129 @@
+// See status_bar.h.
+#include "ui/status_bar.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLocale>
+#include <QProgressBar>
+#include <QPushButton>
+#include <cmath>
+
+#include "app/document_session.h"
+#include "app/jobs/job.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr int kProgressSteps = 1000;
+
+// A label as wide as the longest text that it will show, so that the line does not shiver while the mouse
+// moves.
+QLabel* fixedLabel(const QString& widest, Qt::Alignment alignment) {
+    auto* label = new QLabel;
+    label->setMinimumWidth(label->fontMetrics().horizontalAdvance(widest) + 4);
+    label->setAlignment(alignment | Qt::AlignVCenter);
+    return label;
+}
+
+}  // namespace
+
+QString countText(size_t count) {
+    return QLocale().toString(qulonglong(count));
+}
+
+QString zoomText(double scale) {
+    const double percent = scale * 100;
+    const int digits = percent >= 100 || std::abs(percent - std::round(percent)) < .05 ? 0 : 1;
+    return QLocale().toString(percent, 'f', digits) + " %";
+}
+
+StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
+    setSizeGripEnabled(false);
+    mJob = new QWidget;
+    auto* jobLayout = new QHBoxLayout(mJob);
+    jobLayout->setContentsMargins(12, 3, 0, 3);
+    jobLayout->setSpacing(10);
+    mJobText = new QLabel;
+    mProgress = new QProgressBar;
+    mProgress->setRange(0, kProgressSteps);
+    mProgress->setTextVisible(false);
+    mProgress->setFixedWidth(160);
+    mCancel = new QPushButton(tr("Cancel"));
+    mCancel->setProperty("role", "small");
+    mCancel->setFocusPolicy(Qt::NoFocus);
+    mCancel->setObjectName("cancelJob");
+    jobLayout->addWidget(mProgress);
+    jobLayout->addWidget(mCancel);
+    jobLayout->addWidget(mJobText);
+    jobLayout->addStretch(1);
+    addWidget(mJob, 1);
+    mJob->hide();
+    connect(mCancel, &QPushButton::clicked, this, &StatusBar::cancelRequested);
+
+    mCounts = new QLabel;
+    mCursor = fixedLabel("00000, 00000", Qt::AlignRight);
+    mSwatch = new QLabel;
+    mSwatch->setFixedSize(16, 16);
+    mColour = fixedLabel("#DDDDDD", Qt::AlignLeft);
+    mZoom = new QPushButton;
+    mZoom->setFlat(true);
+    mZoom->setProperty("role", "small");
+    mZoom->setFocusPolicy(Qt::NoFocus);
+    mZoom->setMinimumWidth(mZoom->fontMetrics().horizontalAdvance("100,000 %") + 24);
+    mZoom->setToolTip(tr("Zoom to 100 %"));
+    connect(mZoom, &QPushButton::clicked, this, &StatusBar::zoomClicked);
+    for (QWidget* widget : std::initializer_list<QWidget*>{mCounts, mCursor, mSwatch, mColour, mZoom})
+        addPermanentWidget(widget);
+    layout()->setSpacing(12);
+    layout()->setContentsMargins(0, 0, 8, 0);
+}
+
+void StatusBar::showJob(const Job* job) {
+    mJob->setVisible(job);
+    if (!job) return;
+    QString text = job->title();
+    if (job->stopRequested())
+        text += tr(" — stopping…");
+    else if (!job->stage().isEmpty())
+        text += tr(" — %1, %2 %").arg(job->stage()).arg(int(std::floor(job->fraction() * 100)));
+    mJobText->setText(text);
+    mProgress->setValue(int(job->fraction() * kProgressSteps));
+    mCancel->setVisible(job->kind() != JobKind::Save);
+    mCancel->setEnabled(!job->stopRequested());
+}
+
+QString StatusBar::jobText() const {
+    return mJob->isHidden() ? QString() : mJobText->text();
+}
+
+void StatusBar::showZoom(double scale) {
+    mZoom->setText(zoomText(scale));
+}
+
+void StatusBar::showCursor(std::optional<QPointF> image, QColor colour) {
+    mCursor->setText(image ? QString("%1, %2").arg(std::floor(image->x())).arg(std::floor(image->y()))
+                           : QString());
+    mColour->setText(image && colour.isValid() ? colour.name().toUpper() : QString());
+    mSwatch->setStyleSheet(
+        image && colour.isValid()
+            ? QString("background: %1; border: 1px solid #808080; border-radius: 3px;").arg(colour.name())
+            : QString());
+}
+
+void StatusBar::showCounts(const DocumentSession* session, size_t features) {
+    QString text;
+    if (session && session->hasMesh()) {
+        text = tr("%1 patches  ·  %2 feature curves")
+                   .arg(countText(session->document().mesh.patchCount()), countText(features));
+        if (const auto& difference = session->document().difference)
+            text += tr("  ·  mean error %1").arg(QLocale().toString(difference->mae, 'f', 2));
+    } else if (session) {
+        text = tr("Photo, %1 × %2").arg(session->width()).arg(session->height());
+    }
+    mCounts->setText(text);
+    mCounts->setToolTip(
+        tr("The mean error is in levels of 255, of the vector image at 100 % against the photo"));
+}
+
+}  // namespace tessera

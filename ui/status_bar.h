@@ -1,0 +1,54 @@
+// The line at the bottom: what is running (with its way to stop it), what is under the cursor, what the
+// document holds.
+#pragma once
+
+#include <QColor>
+#include <QPointF>
+#include <QStatusBar>
+#include <optional>
+
+class QLabel;
+class QProgressBar;
+class QPushButton;
+
+namespace tessera {
+
+class DocumentSession;
+class Job;
+
+class StatusBar : public QStatusBar {
+    Q_OBJECT
+
+  public:
+    explicit StatusBar(QWidget* parent = nullptr);
+
+    // Null: nothing runs.
+    void showJob(const Job* job);
+    void showZoom(double scale);
+    // Image pixels and the colour shown there; none outside the picture.
+    void showCursor(std::optional<QPointF> image, QColor colour);
+    void showCounts(const DocumentSession* session, size_t features);
+
+    QString jobText() const;
+
+  signals:
+    void cancelRequested();
+    void zoomClicked();
+
+  private:
+    QWidget* mJob;
+    QLabel* mJobText;
+    QProgressBar* mProgress;
+    QPushButton* mCancel;
+    QLabel* mCounts;
+    QLabel* mCursor;
+    QLabel* mSwatch;
+    QLabel* mColour;
+    QPushButton* mZoom;
+};
+
+// "2,000" in the user's language; "62.5 %" with no more digits than say something.
+QString countText(size_t count);
+QString zoomText(double scale);
+
+}  // namespace tessera

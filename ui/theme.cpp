@@ -1,0 +1,98 @@
+// See theme.h.
+#include "ui/theme.h"
+
+#include <QApplication>
+#include <QPalette>
+#include <QStyleFactory>
+
+namespace tessera {
+
+namespace {
+
+struct Greys {
+    QColor window, base, button, raised, line, text, dim, accent, accentText;
+};
+
+const Greys kDark{"#2d2d2d", "#232323", "#3a3a3a", "#353535", "#1d1d1d",
+                  "#dedede", "#8f8f8f", "#3d8bd9", "#ffffff"};
+const Greys kLight{"#ececec", "#ffffff", "#f7f7f7", "#f4f4f4", "#c4c4c4",
+                   "#1f1f1f", "#7a7a7a", "#1f6fc0", "#ffffff"};
+
+QPalette paletteOf(const Greys& g) {
+    QPalette palette;
+    palette.setColor(QPalette::Window, g.window);
+    palette.setColor(QPalette::WindowText, g.text);
+    palette.setColor(QPalette::Base, g.base);
+    palette.setColor(QPalette::AlternateBase, g.raised);
+    palette.setColor(QPalette::Text, g.text);
+    palette.setColor(QPalette::PlaceholderText, g.dim);
+    palette.setColor(QPalette::Button, g.button);
+    palette.setColor(QPalette::ButtonText, g.text);
+    palette.setColor(QPalette::BrightText, g.accentText);
+    palette.setColor(QPalette::ToolTipBase, g.raised);
+    palette.setColor(QPalette::ToolTipText, g.text);
+    palette.setColor(QPalette::Highlight, g.accent);
+    palette.setColor(QPalette::HighlightedText, g.accentText);
+    palette.setColor(QPalette::Link, g.accent);
+    palette.setColor(QPalette::Light, g.raised.lighter(115));
+    palette.setColor(QPalette::Midlight, g.raised);
+    palette.setColor(QPalette::Mid, g.line.lighter(125));
+    palette.setColor(QPalette::Dark, g.line);
+    palette.setColor(QPalette::Shadow, g.line.darker(140));
+    for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
+        palette.setColor(QPalette::Disabled, role, g.dim);
+    palette.setColor(QPalette::Disabled, QPalette::Highlight, g.button);
+    return palette;
+}
+
+// %1 line, %2 text, %3 dim, %4 accent, %5 accent text, %6 raised, %7 button, %8 window
+const char* const kSheet = R"(
+    QMainWindow::separator { background: %1; width: 1px; height: 1px; }
+    QMenuBar { border-bottom: 1px solid %1; padding: 2px 4px; }
+    QMenuBar::item { padding: 4px 9px; border-radius: 3px; }
+    QMenuBar::item:selected { background: %7; }
+    QStatusBar { border-top: 1px solid %1; }
+    QStatusBar::item { border: none; }
+    QDockWidget { titlebar-close-icon: none; }
+    QDockWidget::title { padding: 8px 14px 2px 14px; background: %8; }
+    QToolTip { color: %2; background: %6; border: 1px solid %1; padding: 4px 6px; }
+    QLabel[role="heading"] { color: %3; font-weight: bold; }
+    QLabel[role="dim"] { color: %3; }
+    QPushButton { padding: 6px 14px; border: 1px solid %1; border-radius: 4px; background: %7; }
+    QPushButton:hover { border-color: %4; }
+    QPushButton:focus { border-color: %4; }
+    QPushButton:disabled { color: %3; background: %8; }
+    QPushButton[role="primary"] { background: %4; color: %5; border-color: %4; font-weight: bold; }
+    QPushButton[role="primary"]:hover, QPushButton[role="primary"]:focus { border-color: %2; }
+    QPushButton[role="primary"]:disabled { background: %7; color: %3; border-color: %1; }
+    QPushButton[role="small"] { padding: 1px 10px; }
+    QProgressBar { border: none; border-radius: 3px; background: %1; max-height: 6px; min-height: 6px; }
+    QProgressBar::chunk { border-radius: 3px; background: %4; }
+    QFrame[role="line"] { background: %1; border: none; max-height: 1px; min-height: 1px; }
+)";
+
+}  // namespace
+
+CanvasColours canvasColours(Theme theme) {
+    if (theme == Theme::Light)
+        return {QColor("#b8b8b8"), QColor(0, 0, 0, 90), QColor("#ffffff"), QColor("#d9d9d9"),
+                QColor("#4a4a4a")};
+    return {QColor("#1f1f1f"), QColor(0, 0, 0, 200), QColor("#9a9a9a"), QColor("#7c7c7c"), QColor("#9a9a9a")};
+}
+
+void applyTheme(QApplication& application, Theme theme) {
+    const Greys& g = theme == Theme::Light ? kLight : kDark;
+    application.setStyle(QStyleFactory::create("Fusion"));
+    const QPalette palette = paletteOf(g);
+    application.setPalette(palette);
+    // Fusion outlines a check box with a darker grey, which cannot be seen on a dark window: fill it lighter.
+    QPalette checkBoxes = palette;
+    checkBoxes.setColor(QPalette::Base, theme == Theme::Light ? g.base : g.button.lighter(130));
+    QApplication::setPalette(checkBoxes, "QCheckBox");
+    QString sheet = kSheet;
+    for (const QColor& colour : {g.line, g.text, g.dim, g.accent, g.accentText, g.raised, g.button, g.window})
+        sheet = sheet.arg(colour.name());
+    application.setStyleSheet(sheet);
+}
+
+}  // namespace tessera

@@ -1,0 +1,27 @@
+// The program's own light and dark looks: neutral greys, so that the frame does not tint how a picture is
+// seen.
+#pragma once
+
+#include <QColor>
+
+#include "app/settings.h"
+
+class QApplication;
+
+namespace tessera {
+
+// What the canvas paints around and behind the picture.
+struct CanvasColours {
+    QColor ground;
+    QColor frame;  // the line around the picture
+    QColor checkLight;
+    QColor checkDark;
+    QColor hint;  // text on the ground
+};
+
+CanvasColours canvasColours(Theme theme);
+
+// Sets style, palette and style sheet of the whole program. (Qt 6.4 cannot tell what the desktop prefers.)
+void applyTheme(QApplication& application, Theme theme);
+
+}  // namespace tessera
