@@ -52,6 +52,7 @@ class Cli : public ::testing::Test {
     // Starts the program; its output goes to files.
     pid_t start(std::vector<std::string> arguments) const {
         arguments.insert(arguments.begin(), TESSERA_CLI);
+        for (const char* name : {"out", "err"}) fs::remove(mFolder / name);  // no one reads the last run's
         const pid_t child = fork();
         if (child != 0) return child;
         dup2(open((mFolder / "out").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), STDOUT_FILENO);
