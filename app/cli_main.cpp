@@ -1,10 +1,12 @@
 // The program tessera-cli: reads the command line and hands over to a command.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 
 #include "app/cli_compare.h"
 #include "app/cli_info.h"
 #include "app/cli_render.h"
+#include "app/cli_stages.h"
 #include "app/cli_support.h"
 #include "app/cli_validate.h"
 #include "app/cli_vectorize.h"
@@ -28,6 +30,14 @@ int main(int argc, char** argv) {
     cli::addInfoCommand(app, exitCode);
     cli::addValidateCommand(app, exitCode);
     cli::addCompareCommand(app, exitCode);
+    cli::addStagesCommand(app, exitCode);
+    // CLI11 would only say that a command is missing.
+    const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+    if (argc > 1 && argv[1][0] != '-' &&
+        std::none_of(commands.begin(), commands.end(),
+                     [&](const CLI::App* c) { return c->get_name() == argv[1]; }))
+        return cli::report(
+            {ErrorCode::Usage, "there is no command '" + std::string(argv[1]) + "'; see tessera-cli --help"});
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -15,6 +15,7 @@ namespace tessera::cli {
 namespace {
 
 constexpr double kMaxOutputPixels = 400e6;
+constexpr double kMinScale = 1e-6, kMaxScale = 1e6;
 
 struct Arguments {
     std::string input;
@@ -39,6 +40,8 @@ Result<View> viewFor(const Arguments& arguments, const PatchMesh& mesh) {
 
 int run(const Arguments& arguments) {
     if (const auto format = pictureFormatFor(arguments.output); !format) return report(format.error());
+    if (!(arguments.scale >= kMinScale && arguments.scale <= kMaxScale))  // CLI11's range lets NaN through
+        return report({ErrorCode::Usage, "--scale is a number from 1e-6 to 1e6"});
     if (arguments.reference && arguments.samples != 1)
         return report({ErrorCode::Usage, "--reference takes one sample a pixel: leave --samples out"});
     if (const auto writable = checkWritable(arguments.output); !writable) return report(writable.error());

@@ -3,6 +3,7 @@
 
 #include <QFileInfo>
 #include <QPointer>
+#include <algorithm>
 
 #include "app/commands/replace_mesh.h"
 #include "app/file_service.h"
@@ -10,6 +11,13 @@
 #include "app/jobs/save_job.h"
 
 namespace tessera {
+
+QString asSentence(const std::string& text) {
+    QString sentence = QString::fromStdString(text).trimmed();
+    if (sentence.isEmpty()) return sentence;
+    sentence[0] = sentence[0].toUpper();
+    return sentence.endsWith('.') ? sentence : sentence + '.';
+}
 
 Workspace::Workspace(QObject* parent) : QObject(parent) {}
 
@@ -70,7 +78,7 @@ void Workspace::applyVectorized(uint64_t revision, const VectorizeSettings& sett
     after.settings = settings;
     after.report = std::move(vectorized.result.report);
     after.difference = vectorized.difference;
-    const QString shortfall = QString::fromStdString(after.report.shortfall);
+    const QString shortfall = asSentence(after.report.shortfall);
     const QPointer<DocumentSession> session = mSession;
     const auto apply = [session, after = std::move(after)] {
         if (session) session->history().push(new ReplaceMesh(*session, after));
@@ -87,7 +95,16 @@ void Workspace::applyVectorized(uint64_t revision, const VectorizeSettings& sett
 }
 
 void Workspace::save(const QString& path, bool embedPhoto, std::function<void()> then) {
-    if (!mSession || running(JobKind::Save)) return;
+    if (!mSession || !mSession->hasMesh()) return;
+    if (Job* job = find(JobKind::Save)) {
+        // The one that runs may hold an older state: look again when it has ended.
+        connect(job, &Job::finished, this, [this, path, embedPhoto, then = std::move(then)] {
+            if (!mSession) return;
+            if (mSession->modified() || mSession->path() != path) return save(path, embedPhoto, then);
+            if (then) then();
+        });
+        return;
+    }
     Document snapshot = mSession->document();
     if (!embedPhoto) snapshot.embeddedSource.reset();
     const QPointer<DocumentSession> session = mSession;
@@ -113,8 +130,10 @@ void Workspace::exportPicture(const ExportRequest& request) {
     track(job);
 }
 
-bool Workspace::running(JobKind kind) const {
-    return std::any_of(mJobs.begin(), mJobs.end(), [&](const Job* job) { return job->kind() == kind; });
+Job* Workspace::find(JobKind kind) const {
+    const auto job =
+        std::find_if(mJobs.begin(), mJobs.end(), [&](const Job* j) { return j->kind() == kind; });
+    return job == mJobs.end() ? nullptr : *job;
 }
 
 void Workspace::cancel() {
@@ -145,7 +164,7 @@ void Workspace::stopAll(JobKind kind) {
 
 void Workspace::report(const Error& error) {
     if (error.code == ErrorCode::Stopped) return;
-    emit said({.kind = Message::Kind::Error, .text = QString::fromStdString(error.message)});
+    emit said({.kind = Message::Kind::Error, .text = asSentence(error.message)});
 }
 
 }  // namespace tessera

@@ -25,6 +25,9 @@ struct Message {
     std::function<void()> action = {};
 };
 
+// Core's messages are clauses that a command line puts after "error: "; a window shows them as sentences.
+QString asSentence(const std::string& text);
+
 class Workspace : public QObject {
     Q_OBJECT
 
@@ -41,13 +44,14 @@ class Workspace : public QObject {
     // Needs a photo; does nothing while a vectorization is running. The result becomes one undoable step.
     void vectorize(const VectorizeSettings& settings);
     bool canVectorize() const;
-    // Saves a snapshot; `then` runs after it has been written, and not where that failed.
+    // Saves a snapshot of a document with patches, after a save that is still running; `then` runs after it
+    // has been written, and not where that failed.
     void save(const QString& path, bool embedPhoto, std::function<void()> then = {});
     void exportPicture(const ExportRequest& request);
 
     // The job to show: the one started last that still runs, or null.
     Job* currentJob() const { return mJobs.isEmpty() ? nullptr : mJobs.last(); }
-    bool running(JobKind kind) const;
+    bool running(JobKind kind) const { return find(kind); }
     // Asks the current job to stop, unless it is a save, which is short and wanted.
     void cancel();
 
@@ -63,6 +67,7 @@ class Workspace : public QObject {
   private:
     void adopt(OpenedFile opened, const QString& path);
     void applyVectorized(uint64_t revision, const VectorizeSettings& settings, Vectorized vectorized);
+    Job* find(JobKind kind) const;
     void track(Job* job);
     void stopAll(JobKind kind);
     // Says the error, unless it is that the user stopped the job.

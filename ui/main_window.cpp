@@ -8,6 +8,7 @@
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QPushButton>
+#include <QScreen>
 #include <QVBoxLayout>
 
 #include "ui/action_table.h"
@@ -233,7 +234,7 @@ void MainWindow::showAbout() {
 }
 
 void MainWindow::restoreWindow() {
-    if (!restoreGeometry(mSettings.blob("geometry"))) resize(kFirstSize);
+    if (!restoreGeometry(mSettings.blob("geometry"))) resize(kFirstSize.boundedTo(screen()->availableSize()));
     restoreState(mSettings.blob("state"));
     const QByteArray shown = mSettings.blob("overlays");
     const ActionTable& a = *mActions;

@@ -104,7 +104,8 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     event->ignore();
     withChangesKept([this] {
         mClosing = true;
-        close();
+        // Not from here: a window that is being asked to close cannot be closed.
+        QMetaObject::invokeMethod(this, &QWidget::close, Qt::QueuedConnection);
     });
 }
 

@@ -16,21 +16,31 @@ struct LineStyle {
     double haloPx;
 };
 
-const LineStyle kFeatureStyle{QColor(255, 214, 92), QColor(20, 14, 0, 190), 1.6, 4.0};
-const LineStyle kEdgeStyle{QColor(255, 255, 255, 205), QColor(0, 0, 0, 120), 1.0, 2.6};
+// From afar, where lines are close together, they are thinner, so that the picture stays visible between
+// them.
+const LineStyle kFeatureNear{QColor(255, 214, 92), QColor(20, 14, 0, 190), 1.6, 4.0};
+const LineStyle kFeatureFar{QColor(255, 214, 92), QColor(20, 14, 0, 150), 1.1, 2.6};
+const LineStyle kEdgeNear{QColor(255, 255, 255, 205), QColor(0, 0, 0, 120), 1.0, 2.6};
+const LineStyle kEdgeFar{QColor(255, 255, 255, 130), QColor(0, 0, 0, 70), .8, 2.0};
 const LineStyle kHandleStyle{QColor(120, 205, 255), QColor(0, 20, 34, 170), 1.0, 2.6};
 
-// Below this mean size on the screen, edges lose their halo: halos would cover the picture.
-constexpr double kHaloFromPx = 14;
+// By the median length of the edges in view: lines are drawn near from here on, and edges have a halo from
+// there.
+constexpr double kNearFromPx = 30;
+constexpr double kHaloFromPx = 9;
 // Control points of an edge appear where it is this long, so that they never hide what they belong to.
 constexpr double kVertexFromPx = 26;
-constexpr double kHandleFromPx = 56;
+constexpr double kFeatureHandleFromPx = 44;
+constexpr double kHandleFromPx = 90;
 constexpr double kVertexSizePx = 7;
 constexpr double kHandleSizePx = 5.5;
 const QColor kMarkOutline(10, 12, 16);
 // A curve is drawn as segments of about this length.
 constexpr double kSegmentPx = 7;
 constexpr double kMaxSegments = 64;
+// Round caps close the notches between segments, but cost eight times as much as the lines themselves; where
+// there are many lines, they are short and nobody sees notches.
+constexpr size_t kMaxRoundCaps = 4000;
 
 QPointF toPoint(glm::dvec2 p) {
     return {p.x, p.y};
@@ -81,7 +91,8 @@ void appendSegment(std::vector<QLineF>& lines, QPointF a, QPointF b, const QRect
 
 void drawLines(QPainter& painter, const std::vector<QLineF>& lines, const QColor& colour, double width) {
     if (lines.empty()) return;
-    painter.setPen(QPen(colour, width, Qt::SolidLine, Qt::RoundCap));
+    const bool round = lines.size() <= kMaxRoundCaps;
+    painter.setPen(QPen(colour, width, Qt::SolidLine, round ? Qt::RoundCap : Qt::FlatCap));
     painter.drawLines(lines.data(), int(lines.size()));
 }
 
@@ -152,17 +163,19 @@ void OverlayPainter::paint(QPainter& painter, const ViewTransform& view, const Q
 void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
                                  double pixelRatio, const OverlayOptions& options) {
     std::vector<QLineF> plain, features;
-    double sizeSum = 0;
+    std::vector<double> sizes;
     for (const Shown& edge : edges) {
-        sizeSum += edge.sizePx;
+        sizes.push_back(edge.sizePx / pixelRatio);
         if (edge.feature && options.features)
             appendCurve(features, edge, clip, pixelRatio);
         else if (options.edges)
             appendCurve(plain, edge, clip, pixelRatio);
     }
-    const double meanPx = sizeSum / double(edges.size()) / pixelRatio;
-    drawTwoTone(painter, plain, kEdgeStyle, pixelRatio, meanPx > kHaloFromPx);
-    drawTwoTone(painter, features, kFeatureStyle, pixelRatio, true);
+    const auto median = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
+    std::nth_element(sizes.begin(), median, sizes.end());
+    const bool near = *median >= kNearFromPx;
+    drawTwoTone(painter, plain, near ? kEdgeNear : kEdgeFar, pixelRatio, *median >= kHaloFromPx);
+    drawTwoTone(painter, features, near ? kFeatureNear : kFeatureFar, pixelRatio, true);
 }
 
 void OverlayPainter::appendCurve(std::vector<QLineF>& lines, const Shown& edge, const QRectF& clip,
@@ -185,7 +198,7 @@ void OverlayPainter::paintControlPoints(QPainter& painter, const std::vector<Sho
     for (const Shown& edge : edges) {
         for (const auto& [end, inner] : {std::pair{edge.p[0], edge.p[1]}, std::pair{edge.p[3], edge.p[2]}}) {
             if (edge.sizePx >= kVertexFromPx * pixelRatio && clip.contains(end)) vertices.push_back(end);
-            if (edge.sizePx < kHandleFromPx * pixelRatio) continue;
+            if (edge.sizePx < (edge.feature ? kFeatureHandleFromPx : kHandleFromPx) * pixelRatio) continue;
             appendSegment(lines, end, inner, clip);
             if (clip.contains(inner)) handles.push_back(inner);
         }

@@ -16,6 +16,7 @@ namespace tessera {
 namespace {
 
 constexpr int kProgressSteps = 1000;
+constexpr int kHeightPx = 32;
 
 // A label as wide as the longest text that it will show, so that the line does not shiver while the mouse
 // moves.
@@ -40,6 +41,8 @@ QString zoomText(double scale) {
 
 StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     setSizeGripEnabled(false);
+    // Always the same, so that the canvas does not jump when a job comes or goes.
+    setFixedHeight(kHeightPx);
     mJob = new QWidget;
     auto* jobLayout = new QHBoxLayout(mJob);
     jobLayout->setContentsMargins(12, 3, 0, 3);

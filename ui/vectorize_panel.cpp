@@ -12,6 +12,7 @@
 #include <QVBoxLayout>
 
 #include "app/document_session.h"
+#include "app/workspace.h"
 #include "ui/action_table.h"
 #include "ui/status_bar.h"
 
@@ -21,7 +22,7 @@ namespace {
 
 constexpr int kMinPatches = 2;
 constexpr int kMaxPatches = 1'000'000;
-constexpr int kPanelWidthPx = 264;
+constexpr int kPanelWidthPx = 280;
 
 QLabel* heading(const QString& text) {
     auto* label = new QLabel(text);
@@ -55,6 +56,8 @@ QCheckBox* boxFor(QAction* action) {
     box->setToolTip(action->toolTip());
     box->setChecked(action->isChecked());
     box->setFocusPolicy(Qt::TabFocus);
+    box->setEnabled(action->isEnabled());
+    QObject::connect(action, &QAction::enabledChanged, box, &QWidget::setEnabled);
     QObject::connect(box, &QCheckBox::clicked, action, &QAction::setChecked);
     QObject::connect(action, &QAction::toggled, box, &QCheckBox::setChecked);
     return box;
@@ -193,7 +196,7 @@ void VectorizePanel::showSession(const DocumentSession* session, size_t features
     }
     if (!document.report.stages.empty())
         add(tr("Time"), tr("%1 s").arg(locale.toString(secondsOf(document.report), 'f', 1)));
-    mShortfall->setText(QString::fromStdString(document.report.shortfall));
+    mShortfall->setText(asSentence(document.report.shortfall));
     mShortfall->setVisible(!document.report.shortfall.empty());
 }
 

@@ -17,54 +17,50 @@ constexpr int kShift = 4;  // OpenCV's fixed-point coordinates: 1/16 pixel
 // Lines over a pale background, in RGB.
 class Drawing {
   public:
-    Drawing(int width, int height, int scale, const Image& background)
-        : mScale(scale), mCanvas(height * scale, width * scale, CV_32FC3, cv::Scalar(1, 1, 1)) {
+    // Of the part of the picture that begins at `origin` and has `size` pixels.
+    Drawing(glm::ivec2 origin, glm::ivec2 size, int scale, const Image& background)
+        : mOrigin(origin), mScale(scale), mCanvas(size.y * scale, size.x * scale, CV_8UC3, cv::Scalar::all(255)) {
         if (background.empty()) return;
         constexpr float kPale = .45F;
         for (int y = 0; y < mCanvas.rows; ++y)
             for (int x = 0; x < mCanvas.cols; ++x)
                 for (int c = 0; c < 3; ++c) {
-                    const float value = std::clamp(background.at(x / scale, y / scale, c), 0.F, 1.F);
-                    mCanvas.at<cv::Vec3f>(y, x)[c] = 1 - kPale * (1 - value);
+                    const float value =
+                        std::clamp(background.at(origin.x + x / scale, origin.y + y / scale, c), 0.F, 1.F);
+                    mCanvas.at<cv::Vec3b>(y, x)[c] = uint8_t(std::lround(255 * (1 - kPale * (1 - value))));
                 }
     }
 
     void line(std::span<const glm::dvec2> points, const cv::Scalar& colour, int thickness = 1) {
         std::vector<cv::Point> fixed;
         for (const glm::dvec2& p : points) fixed.push_back(toFixed(p));
-        cv::polylines(m8(), fixed, false, colour * 255, thickness, cv::LINE_AA, kShift);
+        cv::polylines(mCanvas, fixed, false, colour * 255, thickness, cv::LINE_AA, kShift);
     }
     void dot(glm::dvec2 at, double radiusPx, const cv::Scalar& colour) {
-        cv::circle(m8(), toFixed(at), int(radiusPx * (1 << kShift)), colour * 255, cv::FILLED, cv::LINE_AA, kShift);
+        cv::circle(mCanvas, toFixed(at), int(radiusPx * (1 << kShift)), colour * 255, cv::FILLED, cv::LINE_AA, kShift);
     }
-    Image image() {
-        const cv::Mat& bytes = m8();
-        Image result(bytes.cols, bytes.rows, 3);
-        for (int y = 0; y < bytes.rows; ++y)
-            for (int x = 0; x < bytes.cols; ++x)
-                for (int c = 0; c < 3; ++c) result.at(x, y, c) = float(bytes.at<cv::Vec3b>(y, x)[c]) / 255;
+    Image image() const {
+        Image result(mCanvas.cols, mCanvas.rows, 3);
+        for (int y = 0; y < mCanvas.rows; ++y)
+            for (int x = 0; x < mCanvas.cols; ++x)
+                for (int c = 0; c < 3; ++c) result.at(x, y, c) = float(mCanvas.at<cv::Vec3b>(y, x)[c]) / 255;
         return result;
     }
 
   private:
     cv::Point toFixed(glm::dvec2 p) const {
         const double unit = mScale * (1 << kShift), half = (1 << kShift) / 2.0;  // OpenCV's pixel centres are whole
-        return {int(std::lround(p.x * unit - half)), int(std::lround(p.y * unit - half))};
+        return {int(std::lround((p.x - mOrigin.x) * unit - half)), int(std::lround((p.y - mOrigin.y) * unit - half))};
     }
-    // Anti-aliased lines exist for 8 bits only.
-    cv::Mat& m8() {
-        if (mBytes.empty()) mCanvas.convertTo(mBytes, CV_8UC3, 255);
-        return mBytes;
-    }
-
+    glm::ivec2 mOrigin;
     int mScale;
-    cv::Mat mCanvas, mBytes;
+    cv::Mat mCanvas;
 };
 
 }  // namespace
 
 Image drawFeatures(const std::vector<PixelChain>& chains, int width, int height, int scale, const Image& background) {
-    Drawing drawing(width, height, scale, background);
+    Drawing drawing({0, 0}, {width, height}, scale, background);
     for (const PixelChain& chain : chains) {
         std::vector<glm::dvec2> points;
         for (const glm::ivec2 p : chain.pixels) points.push_back(glm::dvec2(p) + .5);
@@ -74,21 +70,27 @@ Image drawFeatures(const std::vector<PixelChain>& chains, int width, int height,
     return drawing.image();
 }
 
-Image drawInitialMesh(const ChannelMeshes& meshes, int scale, const Image& background) {
-    Drawing drawing(meshes.width, meshes.height, scale, background);
+Image drawInitialMesh(const ChannelMeshes& meshes, int windowPx, int scale, const Image& background) {
+    const glm::ivec2 size(std::min(windowPx, meshes.width), std::min(windowPx, meshes.height));
+    const glm::ivec2 origin((meshes.width - size.x) / 2, (meshes.height - size.y) / 2);
+    Drawing drawing(origin, size, scale, background);
+    const auto inWindow = [&](glm::dvec2 p) {
+        return p.x >= origin.x - 1 && p.y >= origin.y - 1 && p.x <= origin.x + size.x + 1 && p.y <= origin.y + size.y + 1;
+    };
     for (const bool features : {false, true})
         for (uint32_t e = 0; e < meshes.mesh.edgeCapacity(); ++e) {
             const HalfedgeId h = HalfedgeMesh::halfedge(EdgeId(e));
             if (meshes.isFeature(EdgeId(e)) != features) continue;
             const glm::dvec2 ends[] = {toPixels(meshes.positions[meshes.mesh.origin(h).index]),
                                        toPixels(meshes.positions[meshes.mesh.target(h).index])};
+            if (!inWindow(ends[0])) continue;
             drawing.line(ends, features ? kFeatureColour : kEdgeColour, features ? std::max(1, scale / 4) : 1);
         }
     return drawing.image();
 }
 
 Image drawPatches(const PatchMesh& mesh, Outline outline, int scale, const Image& background) {
-    Drawing drawing(mesh.width(), mesh.height(), scale, background);
+    Drawing drawing({0, 0}, {mesh.width(), mesh.height()}, scale, background);
     for (const bool features : {false, true})
         mesh.forEachEdge([&](EdgeId e) {
             if (mesh.curve(e).feature != features) return;

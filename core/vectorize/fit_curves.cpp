@@ -19,9 +19,9 @@ namespace {
 
 // Samples of a patch: the corners of its parametric domain cut into kGrid^2 triangles; of a curve: as many intervals.
 constexpr int kGrid = 8;
-constexpr int kMaxSweeps = 8;
+constexpr int kMaxSweeps = 50;
 constexpr int kMaxEvaluations = 60;
-constexpr double kConvergedPx = 1.0 / kLatticePerPixel;
+constexpr double kConvergedPx = .02;
 
 // Weights of the ten control points in the derivatives along b - a and c - a.
 struct DerivativeBasis {
@@ -229,7 +229,7 @@ double CurveOptimizer::optimizeEdge(EdgeId e) {
         },
         const_cast<BoundaryObjective*>(&objective));
     solver.set_ftol_rel(1e-6);
-    solver.set_xtol_abs(kConvergedPx / 4);
+    solver.set_xtol_abs(kConvergedPx / 10);
     solver.set_maxeval(kMaxEvaluations);
     double value = objective.evaluate(start.data(), nullptr);
     const double before = value;

@@ -7,7 +7,7 @@
 
 global_settings {
   assumed_gamma 1.0
-  max_trace_level 5
+  max_trace_level 8
   radiosity {
     pretrace_start 0.08 pretrace_end 0.02
     count #if (Fast) 40 #else 60 #end

@@ -13,7 +13,7 @@ namespace tessera::test {
 using Bytes = std::vector<uint8_t>;
 
 inline void append(Bytes& bytes, std::string_view text) {
-    bytes.insert(bytes.end(), text.begin(), text.end());
+    for (const char c : text) bytes.push_back(uint8_t(c));
 }
 
 inline void append(Bytes& bytes, const Bytes& more) {
