@@ -8,14 +8,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/parallel.h"
+#include "core/vectorize/pixel_neighbours.h"
 
 namespace tessera {
 
 namespace {
-
-// The 8-neighbours in order of positive rotation from +x.
-constexpr std::array<glm::ivec2, 8> kAround{glm::ivec2(1, 0),  {1, 1},   {0, 1},  {-1, 1},
-                                            glm::ivec2(-1, 0), {-1, -1}, {0, -1}, {1, -1}};
 
 class Grid {
   public:
@@ -26,7 +23,7 @@ class Grid {
     size_t index(glm::ivec2 p) const { return size_t(p.y) * size_t(mWidth) + size_t(p.x); }
     std::array<bool, 8> neighbours(glm::ivec2 p) const {
         std::array<bool, 8> n{};
-        for (size_t i = 0; i < 8; ++i) n[i] = set(p + kAround[i]);
+        for (size_t i = 0; i < 8; ++i) n[i] = set(p + kNeighbours8[i]);
         return n;
     }
 
@@ -102,7 +99,7 @@ std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, doubl
     while (!strong.empty()) {
         const glm::ivec2 p = strong.back();
         strong.pop_back();
-        for (const glm::ivec2 step : kAround) {
+        for (const glm::ivec2 step : kNeighbours8) {
             const glm::ivec2 q = p + step;
             if (!grid.inside(q) || edges[grid.index(q)] != kMaximum) continue;
             edges[grid.index(q)] = kAccepted;
@@ -167,7 +164,7 @@ void removeJunctions(std::vector<uint8_t>& edges, const GradientField& gradient)
     for (const glm::ivec2 p : set) {
         if (!grid.set(p)) continue;
         std::vector<glm::ivec2> neighbours;
-        for (const glm::ivec2 step : kAround)
+        for (const glm::ivec2 step : kNeighbours8)
             if (grid.set(p + step)) neighbours.push_back(p + step);
         std::stable_sort(neighbours.begin(), neighbours.end(), [&](glm::ivec2 a, glm::ivec2 b) {
             return gradient.at(a.x, a.y) > gradient.at(b.x, b.y);
@@ -191,7 +188,7 @@ std::vector<PixelChain> linkChains(const std::vector<uint8_t>& edges, int width,
             chain.pixels.push_back(p);
             grid.clear(p);
             glm::ivec2 next(-1);
-            for (const glm::ivec2 step : kAround)
+            for (const glm::ivec2 step : kNeighbours8)
                 if (grid.set(p + step)) {
                     next = p + step;
                     break;

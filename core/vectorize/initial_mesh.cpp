@@ -7,14 +7,11 @@
 #include <unordered_map>
 
 #include "core/base/check.h"
+#include "core/vectorize/pixel_neighbours.h"
 
 namespace tessera {
 
 namespace {
-
-// The 8 directions in order of positive rotation from +x.
-constexpr std::array<glm::ivec2, 8> kAround{glm::ivec2(1, 0),  {1, 1},   {0, 1},  {-1, 1},
-                                            glm::ivec2(-1, 0), {-1, -1}, {0, -1}, {1, -1}};
 
 // A subpixel: the middle of the grid edge between a vertex on the positive side of the feature and one on the negative.
 struct Subpixel {
@@ -82,20 +79,20 @@ class PixelGrid {
 std::vector<uint32_t> sideFan(const PixelGrid& grid, glm::ivec2 before, glm::ivec2 at, glm::ivec2 after,
                               bool positive) {
     const auto direction = [&](glm::ivec2 to) {
-        return int(std::find(kAround.begin(), kAround.end(), to - at) - kAround.begin());
+        return int(std::find(kNeighbours8.begin(), kNeighbours8.end(), to - at) - kNeighbours8.begin());
     };
     const int step = positive ? 7 : 1;  // from `before` towards `after` on that side
     std::vector<uint32_t> fan;
     for (int d = (direction(before) + step) % 8; d != direction(after); d = (d + step) % 8)
-        if (grid.joined(at, at + kAround[size_t(d)])) fan.push_back(grid.vertex(at + kAround[size_t(d)]));
+        if (grid.joined(at, at + kNeighbours8[size_t(d)])) fan.push_back(grid.vertex(at + kNeighbours8[size_t(d)]));
     return fan;
 }
 
 // The one vertex that makes a triangle with the edge a -> b on its positive (or negative) side.
 uint32_t opposite(const PixelGrid& grid, glm::ivec2 a, glm::ivec2 b, bool positive) {
-    const int d = int(std::find(kAround.begin(), kAround.end(), b - a) - kAround.begin());
+    const int d = int(std::find(kNeighbours8.begin(), kNeighbours8.end(), b - a) - kNeighbours8.begin());
     for (int turn = 1; turn <= 2; ++turn) {
-        const glm::ivec2 to = a + kAround[size_t((d + (positive ? turn : 8 - turn)) % 8)];
+        const glm::ivec2 to = a + kNeighbours8[size_t((d + (positive ? turn : 8 - turn)) % 8)];
         if (grid.joined(a, to)) return grid.vertex(to);
     }
     TESSERA_CHECK(false);
