@@ -40,7 +40,8 @@ GradientField diZenzoGradient(const Image& image, double sigmaPx);
 // that are connected to them (Canny 1986). Thresholds are absolute.
 std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, double high);
 
-// Thins a binary picture to lines of one pixel (Zhang and Suen 1984), then removes the corner pixels of staircases.
+// Thins a binary picture to lines of one pixel (Zhang and Suen 1984, with Lu and Wang's condition of 1986 that spares
+// diagonals), then removes the corner pixels of staircases.
 void thin(std::vector<uint8_t>& edges, int width, int height);
 
 // Removes, at each pixel with more than two 8-neighbours, the weakest of them until two are left.
