@@ -129,7 +129,8 @@ void thin(std::vector<uint8_t>& edges, int width, int height, const std::stop_to
                     count += n[i];
                     transitions += !n[i] && n[(i + 1) % 8];
                 }
-                if (count < 2 || count > 6 || transitions != 1) continue;
+                // At least 3, not 2: else the ends of a staircase go, again and again, until nothing is left of it.
+                if (count < 3 || count > 6 || transitions != 1) continue;
                 const bool free = pass == 0 ? !(north && east && south) && !(east && south && west)
                                             : !(north && east && west) && !(north && south && west);
                 if (free) removed.push_back(p);

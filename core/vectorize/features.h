@@ -43,7 +43,8 @@ GradientField diZenzoGradient(const Image& image, double sigmaPx, const std::sto
 std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, double high,
                                 const std::stop_token& stop = {});
 
-// Thins a binary picture to lines of one pixel (Zhang and Suen 1984), then removes the corner pixels of staircases.
+// Thins a binary picture to lines of one pixel (Zhang and Suen 1984, with Lu and Wang's condition of 1986 that spares
+// diagonals), then removes the corner pixels of staircases.
 void thin(std::vector<uint8_t>& edges, int width, int height, const std::stop_token& stop = {});
 
 // Removes, at each pixel with more than two 8-neighbours, the weakest of them until two are left.

@@ -12,8 +12,8 @@
 namespace tessera {
 
 // Where the constraints of Eq. (5) lie in a patch's domain: the corners and the middles of its n^2 small triangles,
-// and for each corner on a side given in `pairedSides` (bit s for side s) a pair kPairOffset / n of the domain's
-// height away from the side, one inside and one outside (Fig. 10).
+// and for each corner within a side given in `pairedSides` (bit s for side s) a pair kPairOffset / n of the domain's
+// height away from the side, one inside and one outside (Fig. 10); none at the domain's own corners.
 constexpr double kPairOffset = .5;
 std::vector<Barycentric> constraintPoints(int n, unsigned pairedSides);
 
