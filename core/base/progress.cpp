@@ -33,7 +33,8 @@ bool Progress::step(double fraction) {
     if (stopRequested()) return false;
     if (mCallback && nowNs() >= mNextReportNs.load(std::memory_order_relaxed)) {
         const std::lock_guard lock(mMutex);
-        report(std::clamp(fraction, 0.0, 1.0));
+        // Again under the lock: another thread may have reported while this one waited for it.
+        if (nowNs() >= mNextReportNs.load(std::memory_order_relaxed)) report(std::clamp(fraction, 0.0, 1.0));
     }
     return true;
 }

@@ -17,7 +17,10 @@ constexpr std::array<uint8_t, 8> kMagic{0x89, 'T', 'S', 'R', '\r', '\n', 0x1A, '
 constexpr size_t kFixedHeadSize = kMagic.size() + 4 + 4;  // magic, version, number of chunks
 constexpr size_t kChecksumSize = 8;
 constexpr uint32_t kSafeToCopyFlag = 1;
-constexpr int kZstdLevel = 19;
+// The strong level takes seconds a megabyte: it is for what is small, and only where the quick one finds
+// something.
+constexpr int kQuickLevel = 1, kStrongLevel = 19, kFastLevel = 6;
+constexpr size_t kStrongUpTo = size_t{4} << 20;
 
 enum Packing : uint8_t { Plain = 0, Zstd = 1 };
 
@@ -110,9 +113,16 @@ Result<std::vector<Chunk>> unpackChunks(std::span<const uint8_t> bytes, uint32_t
 
 std::vector<uint8_t> deflated(std::span<const uint8_t> bytes) {
     std::vector<uint8_t> packed(ZSTD_compressBound(bytes.size()));
-    const size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), kZstdLevel);
+    const auto pack = [&](int level) {
+        return ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), level);
+    };
+    const auto pays = [&](size_t size) {
+        return !ZSTD_isError(size) && size < bytes.size() / 8 * 7 && bytes.size() / size < kMaxInflation;
+    };
+    size_t size = pack(kQuickLevel);
+    if (pays(size)) size = pack(bytes.size() <= kStrongUpTo ? kStrongLevel : kFastLevel);
     ByteWriter out;
-    if (!ZSTD_isError(size) && size < bytes.size() / 8 * 7 && bytes.size() / size < kMaxInflation) {
+    if (pays(size)) {
         out.u8(Zstd);
         out.u64(bytes.size());
         out.raw({packed.data(), size});

@@ -178,9 +178,11 @@ HalfedgeMesh::Collapse HalfedgeMesh::collapse(HalfedgeId h, std::array<bool, 2> 
     for (size_t i = 0; i < ringSize; ++i) mHalfedges.edit(ringBuffer[i].index).origin = v;
     for (const HalfedgeId out : ringOverflow) mHalfedges.edit(out.index).origin = v;
 
-    // A side outside goes first, while the way around its vertices is whole.
-    for (const HalfedgeId s : {h, twin(h)})
-        if (!face(s).valid()) setNext(prev(s), next(s));
+    // The edge goes first, on both sides while the ways around its ends are whole: outside, the border closes over the
+    // gap; a face is left with two sides, `lost` and `kept`, until `kept` takes the place of lost's twin.
+    const HalfedgeId before = prev(h), beforeTwin = prev(twin(h));
+    setNext(before, next(h));
+    setNext(beforeTwin, next(twin(h)));
 
     std::array<VertexId, 2> opposite;
     std::array<HalfedgeId, 2> outOfOpposite;  // a surviving halfedge that leaves the opposite corner

@@ -52,8 +52,7 @@ class Cli : public ::testing::Test {
     // Starts the program; its output goes to files.
     pid_t start(std::vector<std::string> arguments) const {
         arguments.insert(arguments.begin(), TESSERA_CLI);
-        // What an earlier run wrote must not be taken for this one's.
-        for (const char* stream : {"out", "err"}) fs::remove(mFolder / stream);
+        for (const char* name : {"out", "err"}) fs::remove(mFolder / name);  // no one reads the last run's
         const pid_t child = fork();
         if (child != 0) return child;
         dup2(open((mFolder / "out").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), STDOUT_FILENO);

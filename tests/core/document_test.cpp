@@ -411,6 +411,94 @@ TEST(Document, SizesOfChunksAddUpToTheFile) {
     EXPECT_EQ(sum, bytes.size());
 }
 
+// A document of version 1 with all that a document can hold. It is never made again: what was stored once
+// must load for ever.
+class FixtureOfVersion1 : public ::testing::Test {
+  protected:
+    static std::vector<uint8_t> bytes() {
+        std::ifstream file(TESSERA_TEST_DATA "/v1.tessera", std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+};
+
+TEST_F(FixtureOfVersion1, LoadsWithItsNumbers) {
+    const Document d = decoded(bytes());
+    const PatchMesh& mesh = d.mesh;
+    ASSERT_EQ(mesh.patchCount(), 32u);
+    EXPECT_EQ(mesh.width(), 211);
+    EXPECT_EQ(mesh.height(), 150);
+    EXPECT_EQ(mesh.channels(), 4);
+    EXPECT_EQ(mesh.connectivity().vertexCount(), 26u);
+    EXPECT_EQ(mesh.connectivity().edgeCount(), 57u);
+
+    using Points = std::array<LatticePoint, 10>;
+    EXPECT_EQ(mesh.controlPoints(PatchId(0)).p, (Points{{{0, 0},
+                                                         {3601, 0},
+                                                         {7202, 0},
+                                                         {10803, 0},
+                                                         {10159, 2059},
+                                                         {12079, 5798},
+                                                         {8984, 9093},
+                                                         {3372, 6746},
+                                                         {525, 1456},
+                                                         {6596, 3031}}}));
+    EXPECT_EQ(mesh.controlPoints(PatchId(20)).p, (Points{{{31791, 10944},
+                                                          {45240, 11229},
+                                                          {47518, 18939},
+                                                          {54016, 19200},
+                                                          {48780, 19816},
+                                                          {44911, 20592},
+                                                          {44073, 20815},
+                                                          {41238, 16727},
+                                                          {41064, 16235},
+                                                          {47429, 16760}}}));
+    size_t features = 0, blurred = 0;
+    double blurs = 0;
+    int64_t sumX = 0, sumY = 0;
+    mesh.forEachEdge([&](EdgeId e) {
+        const EdgeCurve& c = mesh.curve(e);
+        features += c.feature;
+        blurred += c.blurSigma[0] > 0;
+        blurs += c.blurSigma[0] + c.blurSigma[1];
+        sumX += c.c1.x + 3 * c.c2.x;
+        sumY += c.c1.y + 3 * c.c2.y;
+    });
+    EXPECT_EQ(features, 8u);
+    EXPECT_EQ(blurred, 2u);
+    EXPECT_NEAR(blurs, 70.4882812, 1e-6);
+    EXPECT_EQ(sumX, 5947886);
+    EXPECT_EQ(sumY, 4272904);
+    ASSERT_EQ(mesh.smoothJoins().size(), 11u);
+    EXPECT_EQ(mesh.smoothJoins()[0], (SmoothJoin{VertexId(0), EdgeId(1), EdgeId(2)}));
+    EXPECT_EQ(mesh.smoothJoins()[3], (SmoothJoin{VertexId(8), EdgeId(28), EdgeId(29)}));
+
+    EXPECT_EQ(mesh.spline(PatchId(0)).terms[0], 16);
+    EXPECT_EQ(mesh.spline(PatchId(20)).terms[0], 4);
+    EXPECT_NEAR(evaluateSpline(mesh.spline(PatchId(0)), 1, {.5, .2}), .354092057, 1e-6);
+    EXPECT_NEAR(evaluateSpline(mesh.spline(PatchId(7)), 1, {.5, .2}), .245044552, 1e-6);
+    EXPECT_NEAR(evaluateSpline(mesh.spline(PatchId(20)), 1, {.5, .2}), .591021632, 1e-6);
+    size_t ownCentres = 0;
+    mesh.forEachPatch([&](PatchId p) { ownCentres += !mesh.spline(p).centres.empty(); });
+    EXPECT_EQ(ownCentres, 3u);
+
+    EXPECT_EQ(d.settings.patches, 126);
+    EXPECT_EQ(d.settings.stageVariants.at("curves"), "straight");
+    ASSERT_EQ(d.report.stages.size(), 2u);
+    EXPECT_EQ(d.report.stages[0].figures[1], (std::pair<std::string, double>("edge pixels", 3456)));
+    EXPECT_EQ(d.report.shortfall, "It got stuck.");
+    EXPECT_EQ(d.difference->euclid, 4);
+    EXPECT_EQ(d.source.iccProfile.size(), 300u);
+    EXPECT_EQ(d.embeddedSource->size(), 1000u);
+    EXPECT_EQ(*d.previewPng, std::vector<uint8_t>(200, 7));
+    ASSERT_EQ(d.unknownChunks.size(), 2u);
+    EXPECT_EQ(d.unknownChunks[0].bytes, (std::vector<uint8_t>{1, 2, 3}));
+}
+
+TEST_F(FixtureOfVersion1, StoresToItsOwnBytes) {
+    Document d = decoded(bytes());
+    EXPECT_EQ(encoded(d), bytes());
+}
+
 class SavedDocument : public ::testing::Test {
   protected:
     void SetUp() override {
