@@ -4,6 +4,8 @@
 #include <QFileInfo>
 #include <QStandardPaths>
 
+#include "core/vectorize/settings.h"
+
 namespace tessera {
 
 namespace {
@@ -58,8 +60,16 @@ void Settings::setPatches(int patches) {
     mSettings.setValue("vectorize/patches", patches);
 }
 
+double Settings::edgeContrast() const {
+    return mSettings.value("vectorize/edgeContrast", VectorizeSettings{}.cannyHigh).toDouble();
+}
+
+void Settings::setEdgeContrast(double share) {
+    mSettings.setValue("vectorize/edgeContrast", share);
+}
+
 bool Settings::vectorizeOnOpen() const {
-    return mSettings.value("vectorize/onOpen", false).toBool();
+    return mSettings.value("vectorize/onOpen", true).toBool();
 }
 
 void Settings::setVectorizeOnOpen(bool on) {

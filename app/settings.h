@@ -28,6 +28,9 @@ class Settings {
 
     int patches() const;
     void setPatches(int patches);
+    // The least contrast of a feature, as a share of the picture's strongest edge (the method's cannyHigh).
+    double edgeContrast() const;
+    void setEdgeContrast(double share);
     bool vectorizeOnOpen() const;
     void setVectorizeOnOpen(bool on);
     bool embedPhoto() const;

@@ -3,6 +3,7 @@
 
 #include <QAction>
 #include <QCheckBox>
+#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QLocale>
@@ -107,6 +108,10 @@ QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     row->addWidget(mPatches, 1);
     column->addLayout(row);
     column->addWidget(dimLabel(tr("More patches keep more detail; fewer are easier to edit.")));
+    column->addLayout(makeEdgeContrastRow());
+    column->addWidget(
+        dimLabel(tr("Edges above this share of the strongest become features. Raise it where they hold too "
+                    "many patches.")));
 
     QAction* vectorize = actions[ActionId::Vectorize];
     auto* button = new QPushButton(tr("Vectorize"));
@@ -135,6 +140,28 @@ QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     connect(embed, &QCheckBox::toggled, this, [this](bool on) { mSettings.setEmbedPhoto(on); });
     column->addWidget(embed);
     return part;
+}
+
+QHBoxLayout* VectorizePanel::makeEdgeContrastRow() {
+    mEdgeContrast = new QDoubleSpinBox;
+    mEdgeContrast->setObjectName("edgeContrast");
+    mEdgeContrast->setRange(1, 100);
+    mEdgeContrast->setDecimals(1);
+    mEdgeContrast->setSingleStep(2.5);
+    mEdgeContrast->setSuffix(tr(" %"));
+    mEdgeContrast->setAlignment(Qt::AlignRight);
+    mEdgeContrast->setMinimumHeight(28);
+    mEdgeContrast->setFocusPolicy(Qt::StrongFocus);
+    setEdgeContrast(mSettings.edgeContrast());
+    connect(mEdgeContrast, &QDoubleSpinBox::valueChanged, this,
+            [this](double percent) { mSettings.setEdgeContrast(percent / 100); });
+    connect(mEdgeContrast, &QDoubleSpinBox::editingFinished, this, &VectorizePanel::editingDone);
+    auto* label = new QLabel(tr("&Edge contrast"));
+    label->setBuddy(mEdgeContrast);
+    auto* row = new QHBoxLayout;
+    row->addWidget(label);
+    row->addWidget(mEdgeContrast, 1);
+    return row;
 }
 
 QWidget* VectorizePanel::makeShowPart(const ActionTable& actions) {
@@ -167,11 +194,20 @@ QWidget* VectorizePanel::makeResultPart() {
 VectorizeSettings VectorizePanel::settings(const DocumentSession* session) const {
     VectorizeSettings settings = session ? session->document().settings : VectorizeSettings{};
     settings.patches = mPatches->value();
+    // The lower threshold follows in the paper's proportion.
+    const VectorizeSettings usual;
+    const double high = mEdgeContrast->value() / 100;
+    settings.cannyLow = high * usual.cannyLow / usual.cannyHigh;
+    settings.cannyHigh = high;
     return settings;
 }
 
 void VectorizePanel::setPatches(int patches) {
     mPatches->setValue(patches);
+}
+
+void VectorizePanel::setEdgeContrast(double share) {
+    mEdgeContrast->setValue(100 * share);
 }
 
 void VectorizePanel::showSession(const DocumentSession* session, size_t features) {

@@ -7,7 +7,9 @@
 #include "core/vectorize/settings.h"
 
 class QCheckBox;
+class QDoubleSpinBox;
 class QFormLayout;
+class QHBoxLayout;
 class QLabel;
 class QPushButton;
 class QSpinBox;
@@ -24,9 +26,10 @@ class VectorizePanel : public QWidget {
   public:
     VectorizePanel(Settings& settings, const ActionTable& actions, QWidget* parent = nullptr);
 
-    // What the user asks for: the document's own settings with the patch count of the panel.
+    // What the user asks for: the document's own settings with the panel's patch count and edge contrast.
     VectorizeSettings settings(const DocumentSession* session) const;
     void setPatches(int patches);
+    void setEdgeContrast(double share);
     // Shows what the document holds; null where none is open.
     void showSession(const DocumentSession* session, size_t features);
 
@@ -36,11 +39,13 @@ class VectorizePanel : public QWidget {
 
   private:
     QWidget* makeVectorizePart(const ActionTable& actions);
+    QHBoxLayout* makeEdgeContrastRow();
     QWidget* makeResultPart();
     QWidget* makeShowPart(const ActionTable& actions);
 
     Settings& mSettings;
     QSpinBox* mPatches = nullptr;
+    QDoubleSpinBox* mEdgeContrast = nullptr;  // in percent
     QWidget* mResult = nullptr;
     QFormLayout* mFigures = nullptr;
     QLabel* mShortfall = nullptr;

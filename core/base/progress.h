@@ -27,6 +27,7 @@ class Progress {
     bool step(double fraction);
 
     bool stopRequested() const { return mStop.stop_requested(); }
+    const std::stop_token& stopToken() const { return mStop; }
 
   private:
     void report(double fraction);

@@ -8,7 +8,9 @@
 namespace tessera {
 
 HalfedgeMesh HalfedgeMesh::fromTriangles(size_t vertexCount,
-                                         std::span<const std::array<uint32_t, 3>> triangles) {
+                                         std::span<const std::array<uint32_t, 3>> triangles,
+                                         const std::stop_token& stop) {
+    constexpr size_t kStopInterval = 4096;
     HalfedgeMesh mesh;
     mesh.mVertexHalfedge.resize(vertexCount);
     mesh.mFaceHalfedge.resize(triangles.size());
@@ -35,6 +37,7 @@ HalfedgeMesh HalfedgeMesh::fromTriangles(size_t vertexCount,
 
     std::vector<HalfedgeId> halfedgeOfSide(3 * triangles.size());
     for (size_t v = 0; v < vertexCount; ++v) {
+        if (v % kStopInterval == 0 && stop.stop_requested()) return {};
         const auto begin = sides.begin() + first[v], end = sides.begin() + first[v + 1];
         std::sort(begin, end, [](const Side& a, const Side& b) {
             return a.larger != b.larger ? a.larger < b.larger : a.side < b.side;
@@ -61,6 +64,7 @@ HalfedgeMesh HalfedgeMesh::fromTriangles(size_t vertexCount,
     mesh.mEdgeCount = mesh.mHalfedges.size() / 2;
 
     for (uint32_t f = 0; f < triangles.size(); ++f) {
+        if (f % kStopInterval == 0 && stop.stop_requested()) return {};
         mesh.mFaceHalfedge.edit(f) = halfedgeOfSide[3 * f];
         for (uint32_t c = 0; c < 3; ++c) {
             const HalfedgeId h = halfedgeOfSide[3 * f + c];

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/base/ids.h"
@@ -19,8 +20,10 @@ class HalfedgeMesh {
   public:
     HalfedgeMesh() = default;
 
-    // Each triangle's corners in positive orientation. Fails a check where a directed edge appears twice.
-    static HalfedgeMesh fromTriangles(size_t vertexCount, std::span<const std::array<uint32_t, 3>> triangles);
+    // Each triangle's corners in positive orientation. Fails a check where a directed edge appears twice. An empty mesh
+    // where `stop` is asked for meanwhile.
+    static HalfedgeMesh fromTriangles(size_t vertexCount, std::span<const std::array<uint32_t, 3>> triangles,
+                                      const std::stop_token& stop = {});
 
     // Ids run over [0, capacity); the live ones are counted apart.
     size_t vertexCapacity() const { return mVertexHalfedge.size(); }

@@ -11,6 +11,9 @@ namespace {
 // Loops may double a list at each contraction; past this length it is pruned at once instead of at the end.
 constexpr uint32_t kLongest = 4096;
 constexpr uint32_t kFlat = 0;  // the length of a node that stands for a flat list
+// What a flat list adds to the length of those that hold it: not its own length, or a path that is long without
+// loops would be pruned, and kept, anew at each contraction.
+constexpr uint32_t kFlatShare = 64;
 
 uint32_t packed(AbsorbedLists::List list) { return list.node << 1 | uint32_t(list.backwards); }
 AbsorbedLists::List unpacked(uint32_t bits) { return {bits >> 1, (bits & 1) != 0}; }
@@ -24,8 +27,8 @@ AbsorbedLists::List AbsorbedLists::pair(VertexId from, VertexId to) {
 
 AbsorbedLists::List AbsorbedLists::joined(List first, List second) {
     const auto length = [&](List list) {
-        const Node& node = mNodes[list.node];
-        return node.length == kFlat ? uint32_t(mFlat[node.first].size()) : node.length;
+        const uint32_t own = mNodes[list.node].length;
+        return own == kFlat ? kFlatShare : own;
     };
     const List list{uint32_t(mNodes.size()), false};
     mNodes.push_back({packed(first), packed(second), length(first) + length(second) - 1});

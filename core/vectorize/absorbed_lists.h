@@ -29,7 +29,8 @@ class AbsorbedLists {
     std::vector<VertexId> prunedPath(List list) const;
 
   private:
-    // A pair of vertices where `length` is 2, else two lists with their direction in the lowest bit.
+    // A pair of vertices where `length` is 2, else two lists with their direction in the lowest bit. A flat list counts
+    // with a fixed length.
     struct Node {
         uint32_t first;
         uint32_t second;

@@ -37,11 +37,11 @@ class Grid {
 
 }  // namespace
 
-GradientField diZenzoGradient(const Image& image, double sigmaPx) {
+GradientField diZenzoGradient(const Image& image, double sigmaPx, const std::stop_token& stop) {
     const int w = image.width(), h = image.height();
     GradientField field{w, h, std::vector<float>(image.planeSize()), std::vector<glm::vec2>(image.planeSize())};
     std::vector<cv::Mat> dx, dy;
-    for (int c = 0; c < image.channels(); ++c) {
+    for (int c = 0; c < image.channels() && !stop.stop_requested(); ++c) {
         const cv::Mat plane(h, w, CV_32F, const_cast<float*>(image.plane(c).data()));
         cv::Mat smooth, x, y;
         cv::GaussianBlur(plane, smooth, cv::Size(), sigmaPx, sigmaPx, cv::BORDER_REPLICATE);
@@ -52,7 +52,7 @@ GradientField diZenzoGradient(const Image& image, double sigmaPx) {
         dy.push_back(y);
     }
     parallelFor(size_t(h), 16, [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row)
+        for (size_t row = begin; row < end && !stop.stop_requested(); ++row)
             for (int col = 0; col < w; ++col) {
                 double xx = 0, xy = 0, yy = 0;
                 for (size_t c = 0; c < dx.size(); ++c) {
@@ -74,7 +74,8 @@ GradientField diZenzoGradient(const Image& image, double sigmaPx) {
     return field;
 }
 
-std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, double high) {
+std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, double high,
+                                const std::stop_token& stop) {
     const int w = gradient.width, h = gradient.height;
     const auto magnitudeAt = [&](double x, double y) {
         const int x0 = std::clamp(int(std::floor(x)), 0, w - 2), y0 = std::clamp(int(std::floor(y)), 0, h - 2);
@@ -88,7 +89,7 @@ std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, doubl
     std::vector<glm::ivec2> strong;
     constexpr uint8_t kMaximum = 1, kAccepted = 2;
     // The outermost pixels have no gradient across them, and a chain there would leave no room for its subpixels.
-    for (int y = 1; y + 1 < h; ++y)
+    for (int y = 1; y + 1 < h && !stop.stop_requested(); ++y)
         for (int x = 1; x + 1 < w; ++x) {
             const double m = gradient.at(x, y);
             if (m < low || m <= 0) continue;
@@ -112,14 +113,14 @@ std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, doubl
     return edges;
 }
 
-void thin(std::vector<uint8_t>& edges, int width, int height) {
+void thin(std::vector<uint8_t>& edges, int width, int height, const std::stop_token& stop) {
     Grid grid(edges, width, height);
     std::vector<glm::ivec2> set;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             if (edges[grid.index({x, y})]) set.emplace_back(x, y);
 
-    for (bool changed = true; changed;) {
+    for (bool changed = true; changed && !stop.stop_requested();) {
         changed = false;
         for (int pass = 0; pass < 2; ++pass) {
             std::vector<glm::ivec2> removed;
@@ -236,15 +237,15 @@ Result<std::vector<PixelChain>> detectFeatures(const Image& image, const Vectori
     std::vector<PixelChain> chains;
     if (report.variant == "none" || image.width() < 3 || image.height() < 3) return chains;
 
-    const GradientField gradient = diZenzoGradient(image, settings.featureSigmaPx);
+    const GradientField gradient = diZenzoGradient(image, settings.featureSigmaPx, progress.stopToken());
     if (!progress.step(.3)) return stopped();
     const double largest = *std::max_element(gradient.magnitude.begin(), gradient.magnitude.end());
     // Below a hundredth of a level a "largest gradient" is rounding.
     constexpr double kFlat = .01 / 255;
     if (largest < kFlat) return chains;
-    auto edges = cannyEdges(gradient, settings.cannyLow * largest, settings.cannyHigh * largest);
+    auto edges = cannyEdges(gradient, settings.cannyLow * largest, settings.cannyHigh * largest, progress.stopToken());
     if (!progress.step(.5)) return stopped();
-    thin(edges, image.width(), image.height());
+    thin(edges, image.width(), image.height(), progress.stopToken());
     removeJunctions(edges, gradient);
     if (!progress.step(.8)) return stopped();
     chains = linkChains(edges, image.width(), image.height(), settings.minChainPixels);

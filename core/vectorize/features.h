@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <stop_token>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -34,14 +35,16 @@ struct GradientField {
 
     float at(int x, int y) const { return magnitude[size_t(y) * size_t(width) + size_t(x)]; }
 };
-GradientField diZenzoGradient(const Image& image, double sigmaPx);
+// The work of this and the next functions ends early, with something unfinished, where `stop` is asked for.
+GradientField diZenzoGradient(const Image& image, double sigmaPx, const std::stop_token& stop = {});
 
 // One byte a pixel, 1 on edges: local maxima of the magnitude along its direction above `high`, and those above `low`
 // that are connected to them (Canny 1986). Thresholds are absolute.
-std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, double high);
+std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, double high,
+                                const std::stop_token& stop = {});
 
 // Thins a binary picture to lines of one pixel (Zhang and Suen 1984), then removes the corner pixels of staircases.
-void thin(std::vector<uint8_t>& edges, int width, int height);
+void thin(std::vector<uint8_t>& edges, int width, int height, const std::stop_token& stop = {});
 
 // Removes, at each pixel with more than two 8-neighbours, the weakest of them until two are left.
 void removeJunctions(std::vector<uint8_t>& edges, const GradientField& gradient);

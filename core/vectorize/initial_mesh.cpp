@@ -122,6 +122,8 @@ std::vector<Subpixel> traceSubpixels(const PixelGrid& grid, const PixelChain& ch
 
 uint64_t edgeKey(uint32_t a, uint32_t b) { return uint64_t(std::min(a, b)) << 32 | std::max(a, b); }
 
+constexpr uint32_t kStopInterval = 4096;
+
 using CutEdges = std::unordered_map<uint64_t, uint32_t>;  // grid edge -> its subpixel
 
 // A triangle of the grid with its subpixels, by the patterns of Fig. 3(d).
@@ -262,6 +264,7 @@ Result<ChannelMeshes> buildInitialMesh(const Image& image, const std::vector<Pix
     m.channels = image.channels();
     const size_t gridVertices = size_t(grid.columns()) * size_t(grid.rows());
     for (uint32_t v = 0; v < gridVertices; ++v) {
+        if (v % kStopInterval == 0 && !progress.step(.1)) return stopped();
         const glm::ivec2 g = grid.place(v);
         const bool sideX = g.x == 0 || g.x == grid.columns() - 1, sideY = g.y == 0 || g.y == grid.rows() - 1;
         m.positions.push_back(grid.position(g));
@@ -269,8 +272,6 @@ Result<ChannelMeshes> buildInitialMesh(const Image& image, const std::vector<Pix
                           : sideX || sideY ? VertexKind::Border
                                            : VertexKind::Interior);
     }
-    if (!progress.step(.1)) return stopped();
-
     CutEdges cuts;
     std::vector<uint8_t> touched(gridVertices, 0);
     std::vector<std::vector<Subpixel>> traces;
@@ -308,13 +309,15 @@ Result<ChannelMeshes> buildInitialMesh(const Image& image, const std::vector<Pix
             }
         }
     }
-    m.mesh = HalfedgeMesh::fromTriangles(m.positions.size(), triangles);
+    m.mesh = HalfedgeMesh::fromTriangles(m.positions.size(), triangles, progress.stopToken());
     if (!progress.step(.8)) return stopped();
 
     m.heights.resize(m.positions.size() * size_t(m.channels));
-    for (uint32_t v = 0; v < gridVertices; ++v)
+    for (uint32_t v = 0; v < gridVertices; ++v) {
+        if (v % kStopInterval == 0 && !progress.step(.8)) return stopped();
         for (int c = 0; c < m.channels; ++c)
             m.heights[size_t(v) * size_t(m.channels) + size_t(c)] = grid.colour(grid.place(v), c);
+    }
     m.copyOfCorner.resize(2 * m.mesh.edgeCapacity());
     for (uint32_t h = 0; h < m.copyOfCorner.size(); ++h) m.copyOfCorner[h] = m.mesh.origin(HalfedgeId(h)).index;
     m.partOfEdge.assign(m.mesh.edgeCapacity(), -1);

@@ -35,6 +35,9 @@ namespace {
 constexpr double kMinHeightPx = .1;
 // After this many failures an edge waits until a contraction beside it changes its surroundings.
 constexpr uint8_t kMaxFailures = 4;
+// Contractions below this error (a sixtieth of a level over a pixel) go on past the wanted number: a flat picture needs
+// no more patches than its features do.
+constexpr double kFreeError = 1e-7;
 
 class Simplifier {
   public:
@@ -182,7 +185,7 @@ void Simplifier::queue(EdgeId e) {
         }
     }
     // The penalty: each failure quadruples the error, and lifts it off zero.
-    constexpr double kLeastPenalty = 1e-6;
+    constexpr double kLeastPenalty = 1e-10;
     if (failures > 0) cheaper = (cheaper + kLeastPenalty) * std::pow(4.0, failures);
     mQueued[e.index] = Queued::Yes;
     mQueue.push({float(cheaper), chosen.index, mStamps[e.index]});
@@ -219,16 +222,18 @@ bool Simplifier::run(Progress& progress) {
         const uint32_t e = c.halfedge >> 1;
         return e < mStamps.size() && mStamps[e] == c.stamp && m.mesh.alive(EdgeId(e));
     };
-    size_t before = SIZE_MAX;
     // A rejected edge may become valid through contractions near but not beside it: begin again until none does.
-    while (m.mesh.faceCount() > wanted && m.mesh.faceCount() < before) {
-        before = m.mesh.faceCount();
+    bool again = false;
+    do {
+        const size_t before = m.mesh.faceCount();
         if (!queueAll(progress)) return false;
-        for (size_t steps = 0; !mQueue.empty() && m.mesh.faceCount() > wanted; ++steps) {
-            if (steps % 256 == 0 && !progress.step(double(initial - m.mesh.faceCount()) / double(initial - wanted)))
+        for (size_t steps = 0; !mQueue.empty(); ++steps) {
+            if (steps % 256 == 0 &&
+                !progress.step(double(initial - m.mesh.faceCount()) / double(std::max(initial, wanted + 1) - wanted)))
                 return false;
             const Candidate top = mQueue.pop(alive);
             if (!alive(top)) continue;
+            if (m.mesh.faceCount() <= wanted && double(top.cost) > kFreeError) break;
             const HalfedgeId h(top.halfedge);
             const EdgeId e = HalfedgeMesh::edge(h);
             if (mQueued[e.index] == Queued::Outdated) {
@@ -240,7 +245,8 @@ bool Simplifier::run(Progress& progress) {
             ++mFailures[e.index];
             queue(e);
         }
-    }
+        again = m.mesh.faceCount() < before;
+    } while (again);
     return true;
 }
 

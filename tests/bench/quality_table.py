@@ -32,7 +32,7 @@ def measure(cli, picture, patches, low, high, extra):
         document, png = os.path.join(folder, "a.tessera"), os.path.join(folder, "a.png")
         made = call(cli, "vectorize", picture, "-o", document, "--patches", patches, "--set", f"cannyLow={low}",
                     "--set", f"cannyHigh={high}", "--quiet", "--json", *extra)
-        subprocess.run([cli, "render", document, "-o", png], check=True)
+        subprocess.run([cli, "render", document, "-o", png], check=True, stderr=subprocess.DEVNULL)
         errors = call(cli, "compare", picture, png, "--json")
         validation = call(cli, "validate", document, "--json")
         info = call(cli, "info", document, "--json")

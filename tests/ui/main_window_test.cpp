@@ -17,6 +17,7 @@
 #include <QWheelEvent>
 #include <cmath>
 
+#include "app/settings.h"
 #include "core/export/rasterize.h"
 #include "ui/action_table.h"
 #include "ui/application.h"
@@ -51,6 +52,7 @@ class MainWindowTest : public ::testing::Test {
     void SetUp() override {
         photo = folder.filePath("disk.png");
         ASSERT_TRUE(disk(160, 120).save(photo));
+        Settings().setVectorizeOnOpen(false);  // each test says when
         window = std::make_unique<MainWindow>();
         window->resize(1000, 700);
         window->show();
