@@ -91,8 +91,8 @@ int run(const Arguments& arguments) {
     std::error_code error;
     std::filesystem::create_directories(arguments.folder, error);
     if (!std::filesystem::is_directory(arguments.folder))
-        return report({ErrorCode::CannotWrite, "cannot make the folder '" + arguments.folder +
-                                                   "'; choose another with -o"});
+        return report({ErrorCode::CannotWrite,
+                       "cannot make the folder '" + arguments.folder + "'; choose another with -o"});
     StopOnSignal stop;
     ProgressDisplay display(arguments.how.quiet);
     Progress progress(stop.token(),

@@ -1,4 +1,5 @@
-// Preconditions and invariants that hold in release builds too. A failed check is a bug of ours, never bad input.
+// Preconditions and invariants that hold in release builds too. A failed check is a bug of ours, never bad
+// input.
 #pragma once
 
 namespace tessera {

@@ -1,4 +1,5 @@
-// Typed 32-bit indices into the arrays of a mesh: a vertex id is not a face id. No pointer to an element is ever kept.
+// Typed 32-bit indices into the arrays of a mesh: a vertex id is not a face id. No pointer to an element is
+// ever kept.
 #pragma once
 
 #include <compare>

@@ -1,5 +1,5 @@
-// An array in pages that copies share until one of them writes: a copy of a mesh is a snapshot that costs a pointer a
-// page, and an edit costs the pages that it touches.
+// An array in pages that copies share until one of them writes: a copy of a mesh is a snapshot that costs a
+// pointer a page, and an edit costs the pages that it touches.
 #pragma once
 
 #include <cstddef>

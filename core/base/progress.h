@@ -12,8 +12,8 @@ namespace tessera {
 
 class Progress {
   public:
-    // Called with the stage's name, the fraction of the stage and of the whole job, both 0..1. Calls never overlap,
-    // but come from any thread; `total` never decreases.
+    // Called with the stage's name, the fraction of the stage and of the whole job, both 0..1. Calls never
+    // overlap, but come from any thread; `total` never decreases.
     using Callback = std::function<void(std::string_view stage, double fraction, double total)>;
 
     Progress() = default;

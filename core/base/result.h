@@ -23,6 +23,8 @@ inline tl::unexpected<Error> failure(ErrorCode code, std::string message) {
 }
 
 // The one Error of a job that was asked to stop.
-inline tl::unexpected<Error> stopped() { return failure(ErrorCode::Stopped, "stopped on request"); }
+inline tl::unexpected<Error> stopped() {
+    return failure(ErrorCode::Stopped, "stopped on request");
+}
 
 }  // namespace tessera

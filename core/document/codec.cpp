@@ -174,7 +174,8 @@ Result<Document> loadDocument(const std::string& path) {
     const bool plain = std::filesystem::is_regular_file(path, error);
     std::ifstream file(path, std::ios::binary);
     if (!plain || !file)
-        return failure(ErrorCode::CannotRead, quoted(path) + " cannot be read; check that it is a file and allows it");
+        return failure(ErrorCode::CannotRead,
+                       quoted(path) + " cannot be read; check that it is a file and allows it");
     const auto size = std::filesystem::file_size(path, error);
     if (error) return failure(ErrorCode::CannotRead, quoted(path) + " cannot be read: " + error.message());
     std::vector<uint8_t> bytes(size);

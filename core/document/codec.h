@@ -18,13 +18,13 @@ struct ChunkSize {
     uint64_t bytes = 0;  // as stored, header included
 };
 
-// Sets `document.colourStep` where it is missing. The mesh may have deleted elements: they are left out, so ids are
-// dense after decoding. encode(decode(encode(d))) is encode(d).
+// Sets `document.colourStep` where it is missing. The mesh may have deleted elements: they are left out, so
+// ids are dense after decoding. encode(decode(encode(d))) is encode(d).
 Result<std::vector<uint8_t>> encodeDocument(Document& document);
 
-// Fails with DamagedDocument and a sentence that names the chunk and the offset; never reads past the bytes, never
-// takes more memory than their number warrants. What it returns passes validate()'s connectivity, border and size
-// checks (certificates are `validate`'s).
+// Fails with DamagedDocument and a sentence that names the chunk and the offset; never reads past the bytes,
+// never takes more memory than their number warrants. What it returns passes validate()'s connectivity,
+// border and size checks (certificates are `validate`'s).
 Result<Document> decodeDocument(std::span<const uint8_t> bytes);
 
 // The sizes of a document's chunks, in file order.
@@ -33,9 +33,11 @@ Result<std::vector<ChunkSize>> chunkSizes(std::span<const uint8_t> bytes);
 // Whether bytes begin like a document.
 bool looksLikeDocument(std::span<const uint8_t> bytes);
 
-// encodeDocument to a temporary file beside `path`, synced and renamed: the file is the old one or the new one.
+// encodeDocument to a temporary file beside `path`, synced and renamed: the file is the old one or the new
+// one.
 Result<void> saveDocument(Document& document, const std::string& path);
-// CannotRead where the file cannot be read, DamagedDocument where it is no sound document; messages name the file.
+// CannotRead where the file cannot be read, DamagedDocument where it is no sound document; messages name the
+// file.
 Result<Document> loadDocument(const std::string& path);
 
 }  // namespace tessera

@@ -27,9 +27,9 @@ struct UnknownChunk {
 
 struct Document {
     PatchMesh mesh;
-    // The step, in colour units (1 is 255 levels), to which colours are rounded in the file. Chosen at the first
-    // encoding so that no pixel moves by more than 0.1 level, then kept for ever: decoding and encoding again gives
-    // the same bytes.
+    // The step, in colour units (1 is 255 levels), to which colours are rounded in the file. Chosen at the
+    // first encoding so that no pixel moves by more than 0.1 level, then kept for ever: decoding and encoding
+    // again gives the same bytes.
     std::optional<double> colourStep;
     VectorizeSettings settings;
     VectorizeReport report;
@@ -39,8 +39,8 @@ struct Document {
     std::shared_ptr<const std::vector<uint8_t>> previewPng;      // at most 512 x 512; may be null
     std::vector<UnknownChunk> unknownChunks;
 
-    // To be called by whatever changes the mesh: drops what is no longer true (unknown chunks that are not safe to
-    // copy, the preview, the difference).
+    // To be called by whatever changes the mesh: drops what is no longer true (unknown chunks that are not
+    // safe to copy, the preview, the difference).
     void markEdited();
 };
 

@@ -19,7 +19,9 @@ class Drawing {
   public:
     // Of the part of the picture that begins at `origin` and has `size` pixels.
     Drawing(glm::ivec2 origin, glm::ivec2 size, int scale, const Image& background)
-        : mOrigin(origin), mScale(scale), mCanvas(size.y * scale, size.x * scale, CV_8UC3, cv::Scalar::all(255)) {
+        : mOrigin(origin),
+          mScale(scale),
+          mCanvas(size.y * scale, size.x * scale, CV_8UC3, cv::Scalar::all(255)) {
         if (background.empty()) return;
         constexpr float kPale = .45F;
         for (int y = 0; y < mCanvas.rows; ++y)
@@ -37,7 +39,8 @@ class Drawing {
         cv::polylines(mCanvas, fixed, false, colour * 255, thickness, cv::LINE_AA, kShift);
     }
     void dot(glm::dvec2 at, double radiusPx, const cv::Scalar& colour) {
-        cv::circle(mCanvas, toFixed(at), int(radiusPx * (1 << kShift)), colour * 255, cv::FILLED, cv::LINE_AA, kShift);
+        cv::circle(mCanvas, toFixed(at), int(radiusPx * (1 << kShift)), colour * 255, cv::FILLED, cv::LINE_AA,
+                   kShift);
     }
     Image image() const {
         Image result(mCanvas.cols, mCanvas.rows, 3);
@@ -49,8 +52,10 @@ class Drawing {
 
   private:
     cv::Point toFixed(glm::dvec2 p) const {
-        const double unit = mScale * (1 << kShift), half = (1 << kShift) / 2.0;  // OpenCV's pixel centres are whole
-        return {int(std::lround((p.x - mOrigin.x) * unit - half)), int(std::lround((p.y - mOrigin.y) * unit - half))};
+        const double unit = mScale * (1 << kShift),
+                     half = (1 << kShift) / 2.0;  // OpenCV's pixel centres are whole
+        return {int(std::lround((p.x - mOrigin.x) * unit - half)),
+                int(std::lround((p.y - mOrigin.y) * unit - half))};
     }
     glm::ivec2 mOrigin;
     int mScale;
@@ -59,7 +64,8 @@ class Drawing {
 
 }  // namespace
 
-Image drawFeatures(const std::vector<PixelChain>& chains, int width, int height, int scale, const Image& background) {
+Image drawFeatures(const std::vector<PixelChain>& chains, int width, int height, int scale,
+                   const Image& background) {
     Drawing drawing({0, 0}, {width, height}, scale, background);
     for (const PixelChain& chain : chains) {
         std::vector<glm::dvec2> points;
@@ -75,7 +81,8 @@ Image drawInitialMesh(const ChannelMeshes& meshes, int windowPx, int scale, cons
     const glm::ivec2 origin((meshes.width - size.x) / 2, (meshes.height - size.y) / 2);
     Drawing drawing(origin, size, scale, background);
     const auto inWindow = [&](glm::dvec2 p) {
-        return p.x >= origin.x - 1 && p.y >= origin.y - 1 && p.x <= origin.x + size.x + 1 && p.y <= origin.y + size.y + 1;
+        return p.x >= origin.x - 1 && p.y >= origin.y - 1 && p.x <= origin.x + size.x + 1 &&
+               p.y <= origin.y + size.y + 1;
     };
     for (const bool features : {false, true})
         for (uint32_t e = 0; e < meshes.mesh.edgeCapacity(); ++e) {
@@ -84,7 +91,8 @@ Image drawInitialMesh(const ChannelMeshes& meshes, int windowPx, int scale, cons
             const glm::dvec2 ends[] = {toPixels(meshes.positions[meshes.mesh.origin(h).index]),
                                        toPixels(meshes.positions[meshes.mesh.target(h).index])};
             if (!inWindow(ends[0])) continue;
-            drawing.line(ends, features ? kFeatureColour : kEdgeColour, features ? std::max(1, scale / 4) : 1);
+            drawing.line(ends, features ? kFeatureColour : kEdgeColour,
+                         features ? std::max(1, scale / 4) : 1);
         }
     return drawing.image();
 }
@@ -98,9 +106,11 @@ Image drawPatches(const PatchMesh& mesh, Outline outline, int scale, const Image
             const int steps = outline == Outline::Curves ? 16 : 1;
             std::vector<glm::dvec2> points;
             for (int i = 0; i <= steps; ++i) points.push_back(curve.at(double(i) / steps));
-            drawing.line(points, features ? kFeatureColour : kEdgeColour, features ? std::max(1, scale / 2) : 1);
+            drawing.line(points, features ? kFeatureColour : kEdgeColour,
+                         features ? std::max(1, scale / 2) : 1);
         });
-    mesh.forEachVertex([&](VertexId v) { drawing.dot(toPixels(mesh.position(v)), .6 * scale, kVertexColour); });
+    mesh.forEachVertex(
+        [&](VertexId v) { drawing.dot(toPixels(mesh.position(v)), .6 * scale, kVertexColour); });
     return drawing.image();
 }
 
@@ -109,7 +119,8 @@ Image residual(const Image& a, const Image& b, double gain) {
     Image result(a.width(), a.height(), 3);
     for (int c = 0; c < 3; ++c)
         for (size_t i = 0; i < a.planeSize(); ++i)
-            result.plane(c)[i] = float(std::clamp(.5 + gain * double(a.plane(c)[i] - b.plane(c)[i]), 0.0, 1.0));
+            result.plane(c)[i] =
+                float(std::clamp(.5 + gain * double(a.plane(c)[i] - b.plane(c)[i]), 0.0, 1.0));
     return result;
 }
 

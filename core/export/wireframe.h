@@ -8,10 +8,12 @@
 
 namespace tessera {
 
-// All of them are opaque pictures of `scale` output pixels per image pixel, over `background` (a picture of the
-// unscaled size, drawn pale; may be empty: white). Features are red, other edges dark blue, vertices dots.
+// All of them are opaque pictures of `scale` output pixels per image pixel, over `background` (a picture of
+// the unscaled size, drawn pale; may be empty: white). Features are red, other edges dark blue, vertices
+// dots.
 
-Image drawFeatures(const std::vector<PixelChain>& chains, int width, int height, int scale, const Image& background);
+Image drawFeatures(const std::vector<PixelChain>& chains, int width, int height, int scale,
+                   const Image& background);
 // The square window of `windowPx` around the picture's middle (or as much of it as there is).
 Image drawInitialMesh(const ChannelMeshes& meshes, int windowPx, int scale, const Image& background);
 // Patch boundaries as curves, or as the straight lines between their ends.

@@ -8,8 +8,8 @@
 
 namespace tessera {
 
-// Planar: plane c is `height` rows of `width` floats. 3 channels (R, G, B), or 4 with alpha where the picture is not
-// opaque. Pixel (x, y) covers [x, x + 1] x [y, y + 1]; its centre is (x + .5, y + .5), y down.
+// Planar: plane c is `height` rows of `width` floats. 3 channels (R, G, B), or 4 with alpha where the picture
+// is not opaque. Pixel (x, y) covers [x, x + 1] x [y, y + 1]; its centre is (x + .5, y + .5), y down.
 class Image {
   public:
     Image() = default;
@@ -24,7 +24,9 @@ class Image {
     size_t planeSize() const { return size_t(mWidth) * size_t(mHeight); }
 
     std::span<float> plane(int c) { return {mData.data() + planeSize() * size_t(c), planeSize()}; }
-    std::span<const float> plane(int c) const { return {mData.data() + planeSize() * size_t(c), planeSize()}; }
+    std::span<const float> plane(int c) const {
+        return {mData.data() + planeSize() * size_t(c), planeSize()};
+    }
 
     float& at(int x, int y, int c) { return mData[index(x, y, c)]; }
     float at(int x, int y, int c) const { return mData[index(x, y, c)]; }
@@ -42,8 +44,8 @@ class Image {
     std::vector<float> mData;
 };
 
-// The value of plane c at image point (x, y) by bilinear interpolation of the pixel centres; outside the picture that
-// of the nearest point of its outermost centres.
+// The value of plane c at image point (x, y) by bilinear interpolation of the pixel centres; outside the
+// picture that of the nearest point of its outermost centres.
 float bilinear(const Image& image, int c, double x, double y);
 
 }  // namespace tessera

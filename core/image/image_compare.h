@@ -9,12 +9,12 @@
 
 namespace tessera {
 
-// PSNR is infinite for equal pictures. SSIM is Wang et al. 2004 on Rec. 601 luma (Gaussian window 11x11, sigma 1.5,
-// K1 .01, K2 .03, L 255, mean over the windows that lie inside) and missing below 11 pixels.
+// PSNR is infinite for equal pictures. SSIM is Wang et al. 2004 on Rec. 601 luma (Gaussian window 11x11,
+// sigma 1.5, K1 .01, K2 .03, L 255, mean over the windows that lie inside) and missing below 11 pixels.
 struct ImageDifference {
-    double mae = 0;                    // mean |d| over pixels and channels
+    double mae = 0;                      // mean |d| over pixels and channels
     std::array<double, 3> maeChannel{};  // the same per channel
-    double euclid = 0;                 // mean Euclidean RGB distance
+    double euclid = 0;                   // mean Euclidean RGB distance
     double rmse = 0;
     double psnr = 0;
     double maeLuma = 0;

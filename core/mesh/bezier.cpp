@@ -31,7 +31,8 @@ BezierCurve BezierCurve::part(double t0, double t1) const {
 
 double BezierCurve::length() const {
     // Gauss-Legendre with 5 nodes: ample for the gentle curves of patch sides.
-    constexpr double kNode[] = {-.9061798459386640, -.5384693101056831, 0, .5384693101056831, .9061798459386640};
+    constexpr double kNode[] = {-.9061798459386640, -.5384693101056831, 0, .5384693101056831,
+                                .9061798459386640};
     constexpr double kWeight[] = {.2369268850561891, .4786286704993665, .5688888888888889, .4786286704993665,
                                   .2369268850561891};
     double sum = 0;
@@ -39,7 +40,9 @@ double BezierCurve::length() const {
     return .5 * sum;
 }
 
-BezierCurve straightCurve(glm::dvec2 a, glm::dvec2 b) { return {{a, (2.0 * a + b) / 3.0, (a + 2.0 * b) / 3.0, b}}; }
+BezierCurve straightCurve(glm::dvec2 a, glm::dvec2 b) {
+    return {{a, (2.0 * a + b) / 3.0, (a + 2.0 * b) / 3.0, b}};
+}
 
 CurveFoot nearestOnCurve(const BezierCurve& curve, glm::dvec2 point) {
     constexpr int kStarts = 8;
@@ -93,7 +96,8 @@ PatchPoint evaluateWithDerivatives(const BezierTriangle& t, const Barycentric& b
 }
 
 std::array<BezierTriangle, 3> deCasteljau(const BezierTriangle& triangle, const Barycentric& t) {
-    // level[l] holds the points of order 3 - l; the sub-triangles collect those on the sides of the tetrahedral scheme.
+    // level[l] holds the points of order 3 - l; the sub-triangles collect those on the sides of the
+    // tetrahedral scheme.
     glm::dvec2 level[4][4][4];  // [l][i][j], k = 3 - l - i - j
     for (int i = 0; i <= 3; ++i)
         for (int j = 0; i + j <= 3; ++j) level[0][i][j] = triangle.p[size_t(controlIndex(i, j, 3 - i - j))];
@@ -127,9 +131,9 @@ std::array<BezierTriangle, 4> subdivide4(const BezierTriangle& abc) {
         r.p[kInterior] = t.p[kInterior];
         return r;
     };
-    const auto atK = deCasteljau(rotate(aic, 2), half);   // of (c, a, i)
+    const auto atK = deCasteljau(rotate(aic, 2), half);  // of (c, a, i)
     const BezierTriangle kai = atK[0];
-    const auto atJ = deCasteljau(rotate(ibc, 1), half);   // of (b, c, i)
+    const auto atJ = deCasteljau(rotate(ibc, 1), half);  // of (b, c, i)
     const BezierTriangle bji = atJ[1];
     const BezierTriangle jci = atJ[0];
     // (i, j, c) extrapolated to k = i - j + c gives (k, j, c) with i replaced and (i, j, k) with c replaced.
@@ -145,8 +149,8 @@ glm::dvec2 defaultInterior(const BezierTriangle& t) {
 
 namespace {
 
-// Twenty times the integral of (x dy - y dx) / 2 along a cubic: an integer combination of its control points' cross
-// products (Green's theorem; each product of Bernstein polynomials integrated exactly).
+// Twenty times the integral of (x dy - y dx) / 2 along a cubic: an integer combination of its control points'
+// cross products (Green's theorem; each product of Bernstein polynomials integrated exactly).
 template <class Scalar, class Point>
 Scalar curveArea20(const std::array<Point, 4>& q) {
     return 6 * cross(q[0], q[1]) + 3 * cross(q[0], q[2]) + cross(q[0], q[3]) + 3 * cross(q[1], q[2]) +
@@ -169,7 +173,8 @@ int64_t signedArea20(const LatticeTriangle& t) {
 
 namespace {
 
-// Inner control points of the least-squares cubic for fixed parameters; false where the points do not determine them.
+// Inner control points of the least-squares cubic for fixed parameters; false where the points do not
+// determine them.
 bool solveInner(std::span<const glm::dvec2> points, std::span<const double> parameters, BezierCurve& curve) {
     double a11 = 0, a12 = 0, a22 = 0;
     glm::dvec2 r1(0), r2(0);

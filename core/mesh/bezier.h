@@ -1,4 +1,5 @@
-// Cubic Bezier curves and triangles in the plane (Farin, Curves and Surfaces for CAGD; paper sections 3 and 5).
+// Cubic Bezier curves and triangles in the plane (Farin, Curves and Surfaces for CAGD; paper sections 3 and
+// 5).
 #pragma once
 
 #include <array>
@@ -50,7 +51,8 @@ constexpr int controlIndex(int i, int j, int k) {
     return 6 + i;
 }
 
-// Control points of a cubic triangle: side s (0: ab, 1: bc, 2: ca) is the curve of points 3s .. 3s + 3 (mod 9).
+// Control points of a cubic triangle: side s (0: ab, 1: bc, 2: ca) is the curve of points 3s .. 3s + 3 (mod
+// 9).
 template <class Point>
 struct CubicTriangle {
     std::array<Point, 10> p{};
@@ -66,8 +68,8 @@ using LatticeTriangle = CubicTriangle<LatticePoint>;
 
 BezierTriangle toPixels(const LatticeTriangle& t);
 
-// The patch's point at `b`, and its derivatives along b - a and c - a (the columns of the Jacobian in the parameters
-// (v, w)).
+// The patch's point at `b`, and its derivatives along b - a and c - a (the columns of the Jacobian in the
+// parameters (v, w)).
 struct PatchPoint {
     glm::dvec2 position;
     glm::dvec2 dv;
@@ -76,28 +78,28 @@ struct PatchPoint {
 glm::dvec2 evaluate(const BezierTriangle& t, const Barycentric& b);
 PatchPoint evaluateWithDerivatives(const BezierTriangle& t, const Barycentric& b);
 
-// One pass of de Casteljau's algorithm at parameters `t` gives the control points of the sub-triangles in which one
-// corner is replaced by the point at t: first[corner] is the triangle with that corner replaced (paper section 5,
-// Fig. 12; any t with sum 1, also outside the triangle, reproduces the same surface).
+// One pass of de Casteljau's algorithm at parameters `t` gives the control points of the sub-triangles in
+// which one corner is replaced by the point at t: first[corner] is the triangle with that corner replaced
+// (paper section 5, Fig. 12; any t with sum 1, also outside the triangle, reproduces the same surface).
 std::array<BezierTriangle, 3> deCasteljau(const BezierTriangle& triangle, const Barycentric& t);
 
 // The uniform 4-way subdivision of section 5 by four passes of de Casteljau's algorithm, the last with
-// t = (1, -1, 1). Children: at corner a, at b, at c, and the middle one, whose corners are the midpoints of sides
-// (ab, bc, ca) in this order.
+// t = (1, -1, 1). Children: at corner a, at b, at c, and the middle one, whose corners are the midpoints of
+// sides (ab, bc, ca) in this order.
 std::array<BezierTriangle, 4> subdivide4(const BezierTriangle& triangle);
 
-// The interior control point that gives the triangle quadratic precision: the mean of the six side points times 3/2
-// less half the mean of the corners. The usual choice where nothing else determines it.
+// The interior control point that gives the triangle quadratic precision: the mean of the six side points
+// times 3/2 less half the mean of the corners. The usual choice where nothing else determines it.
 glm::dvec2 defaultInterior(const BezierTriangle& t);
 
-// The area enclosed by the triangle's boundary curves, positive where it runs from a over b to c in the direction of
-// positive orientation. Exact but for rounding in the last place of double.
+// The area enclosed by the triangle's boundary curves, positive where it runs from a over b to c in the
+// direction of positive orientation. Exact but for rounding in the last place of double.
 double signedArea(const BezierTriangle& t);
 // The same times 20 in square lattice units, exactly.
 int64_t signedArea20(const LatticeTriangle& t);
 
-// The least-squares cubic through `points` with its ends at the first and last of them: chord-length parameters, then
-// reparametrized by projection `rounds` times. At least two points.
+// The least-squares cubic through `points` with its ends at the first and last of them: chord-length
+// parameters, then reparametrized by projection `rounds` times. At least two points.
 BezierCurve fitCurve(std::span<const glm::dvec2> points, int rounds = 4);
 
 // The largest distance from one of `points` to the curve.

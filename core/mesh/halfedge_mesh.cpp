@@ -17,7 +17,8 @@ HalfedgeMesh HalfedgeMesh::fromTriangles(size_t vertexCount,
     mesh.mVertexCount = vertexCount;
     mesh.mFaceCount = triangles.size();
 
-    // Triangle sides bucketed by their smaller vertex (counting sort): the two sides of an edge meet in one bucket.
+    // Triangle sides bucketed by their smaller vertex (counting sort): the two sides of an edge meet in one
+    // bucket.
     struct Side {
         uint32_t larger;
         uint32_t side;  // 3 * triangle + corner
@@ -182,8 +183,9 @@ HalfedgeMesh::Collapse HalfedgeMesh::collapse(HalfedgeId h, std::array<bool, 2> 
     for (size_t i = 0; i < ringSize; ++i) mHalfedges.edit(ringBuffer[i].index).origin = v;
     for (const HalfedgeId out : ringOverflow) mHalfedges.edit(out.index).origin = v;
 
-    // The edge goes first, on both sides while the ways around its ends are whole: outside, the border closes over the
-    // gap; a face is left with two sides, `lost` and `kept`, until `kept` takes the place of lost's twin.
+    // The edge goes first, on both sides while the ways around its ends are whole: outside, the border closes
+    // over the gap; a face is left with two sides, `lost` and `kept`, until `kept` takes the place of lost's
+    // twin.
     const HalfedgeId before = prev(h), beforeTwin = prev(twin(h));
     setNext(before, next(h));
     setNext(beforeTwin, next(twin(h)));
@@ -246,8 +248,10 @@ void HalfedgeMesh::flip(EdgeId e) {
 
 HalfedgeMesh::Compacted HalfedgeMesh::compacted() const {
     Compacted result;
-    std::vector<uint32_t> newVertex(vertexCapacity(), 0), newEdge(edgeCapacity(), 0), newFace(faceCapacity(), 0);
-    const auto number = [&]<class IdType>(std::vector<uint32_t>& to, std::vector<IdType>& old, size_t capacity) {
+    std::vector<uint32_t> newVertex(vertexCapacity(), 0), newEdge(edgeCapacity(), 0),
+        newFace(faceCapacity(), 0);
+    const auto number = [&]<class IdType>(std::vector<uint32_t>& to, std::vector<IdType>& old,
+                                          size_t capacity) {
         for (uint32_t i = 0; i < capacity; ++i)
             if (alive(IdType(i))) {
                 to[i] = uint32_t(old.size());

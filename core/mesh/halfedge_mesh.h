@@ -1,8 +1,9 @@
 // Connectivity of a triangulated region of the plane: one type for simplification and for editing.
 //
-// Invariants: halfedges come in pairs, twin = h ^ 1 and edge = h >> 1; every face is a triangle; a halfedge without a
-// face lies outside the region, and those form closed loops; no edge joins a vertex to itself and no two edges join
-// the same two vertices. Deleted elements keep their ids; copies are snapshots (see paged_array.h).
+// Invariants: halfedges come in pairs, twin = h ^ 1 and edge = h >> 1; every face is a triangle; a halfedge
+// without a face lies outside the region, and those form closed loops; no edge joins a vertex to itself and
+// no two edges join the same two vertices. Deleted elements keep their ids; copies are snapshots (see
+// paged_array.h).
 #pragma once
 
 #include <array>
@@ -20,8 +21,8 @@ class HalfedgeMesh {
   public:
     HalfedgeMesh() = default;
 
-    // Each triangle's corners in positive orientation. Fails a check where a directed edge appears twice. An empty mesh
-    // where `stop` is asked for meanwhile.
+    // Each triangle's corners in positive orientation. Fails a check where a directed edge appears twice. An
+    // empty mesh where `stop` is asked for meanwhile.
     static HalfedgeMesh fromTriangles(size_t vertexCount, std::span<const std::array<uint32_t, 3>> triangles,
                                       const std::stop_token& stop = {});
 
@@ -50,9 +51,7 @@ class HalfedgeMesh {
     // An outgoing halfedge; for a vertex on the border that whose face is outside.
     HalfedgeId halfedge(VertexId v) const { return mVertexHalfedge[v.index]; }
     bool onBorder(VertexId v) const { return !face(halfedge(v)).valid(); }
-    bool onBorder(EdgeId e) const {
-        return !face(halfedge(e)).valid() || !face(twin(halfedge(e))).valid();
-    }
+    bool onBorder(EdgeId e) const { return !face(halfedge(e)).valid() || !face(twin(halfedge(e))).valid(); }
     // The next outgoing halfedge around the origin; comes back to the first after a full turn.
     HalfedgeId rotate(HalfedgeId h) const { return next(twin(h)); }
 
@@ -77,8 +76,8 @@ class HalfedgeMesh {
     // Whether moving the origin of h onto its target keeps the invariants (the link condition).
     bool canCollapse(HalfedgeId h) const;
 
-    // What collapse() did: on either side of the edge, two edges became one. `kept` now lies where `replaced` lay
-    // before (its face and its place around it); both invalid on a side without a face.
+    // What collapse() did: on either side of the edge, two edges became one. `kept` now lies where `replaced`
+    // lay before (its face and its place around it); both invalid on a side without a face.
     struct Merge {
         HalfedgeId kept;
         HalfedgeId replaced;
@@ -87,9 +86,9 @@ class HalfedgeMesh {
         std::array<Merge, 2> merges;
     };
 
-    // Moves the origin u of h onto its target v, deleting u, the edge and the faces beside it. Of the two edges that
-    // fall together on a side the one at v survives, or the one at u where keepOrigin[side] is set (side 0: the face
-    // of h). Needs canCollapse(h).
+    // Moves the origin u of h onto its target v, deleting u, the edge and the faces beside it. Of the two
+    // edges that fall together on a side the one at v survives, or the one at u where keepOrigin[side] is set
+    // (side 0: the face of h). Needs canCollapse(h).
     Collapse collapse(HalfedgeId h, std::array<bool, 2> keepOrigin = {false, false});
 
     // Whether the edge between two faces can be turned to join their opposite corners.

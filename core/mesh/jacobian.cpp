@@ -13,7 +13,8 @@ constexpr int multinomial(int degree, int i, int j) {
     return kFactorial[degree] / (kFactorial[i] * kFactorial[j] * kFactorial[degree - i - j]);
 }
 
-// Derivative control points of the quadratic with exponents (i, j, k): along b - a and along c - a, without the factor 3.
+// Derivative control points of the quadratic with exponents (i, j, k): along b - a and along c - a, without
+// the factor 3.
 struct Derivatives {
     LatticePoint alongV, alongW;
 };
@@ -34,8 +35,8 @@ std::array<int64_t, 15> scaledCoefficients(const LatticeTriangle& t) {
         for (int j = 0; i + j <= 2; ++j)
             for (int m = 0; m <= 2; ++m)
                 for (int n = 0; m + n <= 2; ++n)
-                    sum[size_t(quarticIndex(i + m, j + n))] += multinomial(2, i, j) * multinomial(2, m, n) *
-                                                               cross(d[i][j].alongV, d[m][n].alongW);
+                    sum[size_t(quarticIndex(i + m, j + n))] +=
+                        multinomial(2, i, j) * multinomial(2, m, n) * cross(d[i][j].alongV, d[m][n].alongW);
     return sum;
 }
 
@@ -79,7 +80,8 @@ bool positive(const Quartic& q, int bisections) {
     if (bisections == 0) return false;
     Quartic first{}, second{};
     halve(q, first, second);
-    // Newest-vertex bisection: next is the side opposite the new corner, so that three steps halve every side.
+    // Newest-vertex bisection: next is the side opposite the new corner, so that three steps halve every
+    // side.
     return positive(rotated(rotated(first)), bisections - 1) && positive(rotated(second), bisections - 1);
 }
 
@@ -122,7 +124,8 @@ std::optional<LatticePoint> certifiedInterior(const LatticeTriangle& t) {
     if (certified(trial)) return usual;
     if (cross(t.corner(1) - t.corner(0), t.corner(2) - t.corner(0)) <= 0) return std::nullopt;
 
-    // c_g(x, y) = c0_g + gx_g x + gy_g y around the usual point, in steps of one pixel; maximize the smallest.
+    // c_g(x, y) = c0_g + gx_g x + gy_g y around the usual point, in steps of one pixel; maximize the
+    // smallest.
     const auto c0 = jacobianBernstein(trial);
     LatticeTriangle alongX = trial, alongY = trial;
     alongX.p[kInterior].x += kLatticePerPixel;
@@ -142,7 +145,8 @@ std::optional<LatticePoint> certifiedInterior(const LatticeTriangle& t) {
                 const glm::dvec2 point((ra * by - rb * ay) / determinant, (ax * rb - bx * ra) / determinant);
                 double smallest = 1e300;
                 for (size_t g = 0; g < 15 && smallest > best; ++g)
-                    smallest = std::min(smallest, c0[g] + (cx[g] - c0[g]) * point.x + (cy[g] - c0[g]) * point.y);
+                    smallest =
+                        std::min(smallest, c0[g] + (cx[g] - c0[g]) * point.x + (cy[g] - c0[g]) * point.y);
                 if (smallest > best) {
                     best = smallest;
                     at = point;

@@ -1,5 +1,5 @@
-// The lattice of 1/256 pixel on which every vertex and control point lies, in memory as in the file: what is certified
-// is exactly what is stored.
+// The lattice of 1/256 pixel on which every vertex and control point lies, in memory as in the file: what is
+// certified is exactly what is stored.
 #pragma once
 
 #include <cmath>
@@ -36,6 +36,8 @@ constexpr int64_t cross(LatticePoint a, LatticePoint b) {
     return int64_t(a.x) * b.y - int64_t(a.y) * b.x;
 }
 
-inline double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
+inline double cross(glm::dvec2 a, glm::dvec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
 
 }  // namespace tessera

@@ -11,7 +11,9 @@ namespace tessera {
 
 namespace {
 
-std::string name(const char* kind, uint32_t index) { return std::string(kind) + " " + std::to_string(index); }
+std::string name(const char* kind, uint32_t index) {
+    return std::string(kind) + " " + std::to_string(index);
+}
 
 class Findings {
   public:
@@ -38,7 +40,8 @@ void checkBorder(const PatchMesh& mesh, Findings& findings) {
             findings.add(name("vertex", v.index) + " lies outside the picture");
         corners += (p.x == 0 || p.x == right) && (p.y == 0 || p.y == bottom);
     });
-    if (corners != 4) findings.add(std::to_string(corners) + " vertices at the picture's corners in place of 4");
+    if (corners != 4)
+        findings.add(std::to_string(corners) + " vertices at the picture's corners in place of 4");
     mesh.forEachEdge([&](EdgeId e) {
         if (!c.onBorder(e)) return;
         ++borderEdges;
@@ -132,8 +135,8 @@ std::array<glm::dvec2, kFlatSegments + 1> flattened(const PatchMesh& mesh, Halfe
     return points;
 }
 
-// How often each pixel centre lies in a patch by the winding number of the patch's outline; a patch that winds around
-// a centre backwards or twice counts as two.
+// How often each pixel centre lies in a patch by the winding number of the patch's outline; a patch that
+// winds around a centre backwards or twice counts as two.
 std::vector<uint8_t> coverage(const PatchMesh& mesh) {
     const int width = mesh.width(), height = mesh.height();
     std::vector<uint8_t> count(size_t(width) * size_t(height), 0);
@@ -150,8 +153,10 @@ std::vector<uint8_t> coverage(const PatchMesh& mesh) {
             }
         }
         // Pixel (x, y) has its centre at + .5; a segment crosses the rows whose centres lie in [top, bottom).
-        const int x0 = std::max(0, int(std::ceil(lo.x - .5))), x1 = std::min(width, int(std::ceil(hi.x - .5)));
-        const int y0 = std::max(0, int(std::ceil(lo.y - .5))), y1 = std::min(height, int(std::ceil(hi.y - .5)));
+        const int x0 = std::max(0, int(std::ceil(lo.x - .5))),
+                  x1 = std::min(width, int(std::ceil(hi.x - .5)));
+        const int y0 = std::max(0, int(std::ceil(lo.y - .5))),
+                  y1 = std::min(height, int(std::ceil(hi.y - .5)));
         if (x0 >= x1 || y0 >= y1) return;
         const auto stride = size_t(x1 - x0 + 1);
         steps.assign(stride * size_t(y1 - y0), 0);
@@ -159,7 +164,8 @@ std::vector<uint8_t> coverage(const PatchMesh& mesh) {
             const bool down = from.y < to.y;
             // The same arithmetic from both sides of an edge.
             const glm::dvec2 a = down ? from : to, b = down ? to : from;
-            const int top = std::max(y0, int(std::ceil(a.y - .5))), bottom = std::min(y1, int(std::ceil(b.y - .5)));
+            const int top = std::max(y0, int(std::ceil(a.y - .5))),
+                      bottom = std::min(y1, int(std::ceil(b.y - .5)));
             for (int y = top; y < bottom; ++y) {
                 const double x = a.x + (y + .5 - a.y) / (b.y - a.y) * (b.x - a.x);
                 const int first = std::clamp(int(std::ceil(x - .5)), x0, x1);
@@ -194,8 +200,8 @@ std::vector<std::string> connectivityViolations(const HalfedgeMesh& mesh) {
         if (!mesh.alive(HalfedgeMesh::edge(h))) continue;
         edges += (i & 1) == 0;
         const HalfedgeId n = mesh.next(h);
-        if (!require(n.valid() && n.index < 2 * mesh.edgeCapacity() && mesh.alive(HalfedgeMesh::edge(n)), "halfedge",
-                     i, "has no successor"))
+        if (!require(n.valid() && n.index < 2 * mesh.edgeCapacity() && mesh.alive(HalfedgeMesh::edge(n)),
+                     "halfedge", i, "has no successor"))
             continue;
         require(mesh.origin(n) == mesh.target(h), "halfedge", i, "does not end where its successor begins");
         require(mesh.face(n) == mesh.face(h), "halfedge", i, "has a successor in another face");
@@ -203,21 +209,24 @@ std::vector<std::string> connectivityViolations(const HalfedgeMesh& mesh) {
         require(mesh.alive(mesh.origin(h)), "halfedge", i, "leaves a deleted vertex");
         ++outgoing[mesh.origin(h).index];
         if (mesh.face(h).valid())
-            require(mesh.alive(mesh.face(h)) && mesh.next(mesh.next(n)) == h, "halfedge", i, "is no side of a triangle");
+            require(mesh.alive(mesh.face(h)) && mesh.next(mesh.next(n)) == h, "halfedge", i,
+                    "is no side of a triangle");
         else
             require(mesh.face(HalfedgeMesh::twin(h)).valid(), "halfedge", i, "has no face on either side");
     }
     for (uint32_t i = 0; i < mesh.faceCapacity(); ++i) {
         if (!mesh.alive(FaceId(i))) continue;
         ++faces;
-        require(mesh.face(mesh.halfedge(FaceId(i))) == FaceId(i), "face", i, "is not the face of its halfedge");
+        require(mesh.face(mesh.halfedge(FaceId(i))) == FaceId(i), "face", i,
+                "is not the face of its halfedge");
     }
     if (!found.empty()) return found;
     for (uint32_t i = 0; i < mesh.vertexCapacity(); ++i) {
         const VertexId v(i);
         if (!mesh.alive(v)) continue;
         ++vertices;
-        if (!require(mesh.origin(mesh.halfedge(v)) == v, "vertex", i, "is not the origin of its halfedge")) continue;
+        if (!require(mesh.origin(mesh.halfedge(v)) == v, "vertex", i, "is not the origin of its halfedge"))
+            continue;
         uint32_t around = 0, outside = 0;
         std::vector<VertexId> neighbours;
         HalfedgeId h = mesh.halfedge(v);
@@ -251,7 +260,8 @@ MeshValidation validate(const PatchMesh& mesh) {
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
         auto back = mesh.controlPoints(HalfedgeMesh::twin(h));
         std::reverse(back.begin(), back.end());
-        if (back != mesh.controlPoints(h)) findings.add(name("edge", e.index) + " differs from its other side");
+        if (back != mesh.controlPoints(h))
+            findings.add(name("edge", e.index) + " differs from its other side");
     });
 
     result.minBernstein = HUGE_VAL;
@@ -276,8 +286,10 @@ MeshValidation validate(const PatchMesh& mesh) {
         result.uncoveredPixels += count == 0;
         result.doublePixels += count > 1;
     }
-    if (result.uncoveredPixels) findings.add(std::to_string(result.uncoveredPixels) + " pixel centres are in no patch");
-    if (result.doublePixels) findings.add(std::to_string(result.doublePixels) + " pixel centres are in several patches");
+    if (result.uncoveredPixels)
+        findings.add(std::to_string(result.uncoveredPixels) + " pixel centres are in no patch");
+    if (result.doublePixels)
+        findings.add(std::to_string(result.doublePixels) + " pixel centres are in several patches");
     return result;
 }
 
@@ -289,7 +301,8 @@ SeamStatistics measureSeams(const PatchMesh& mesh) {
     mesh.forEachEdge([&](EdgeId e) {
         if (mesh.curve(e).feature || c.onBorder(e)) return;
         const HalfedgeId h = HalfedgeMesh::halfedge(e), t = HalfedgeMesh::twin(h);
-        const auto at = [&](HalfedgeId side, double s) {  // domain point of the side's patch, s along the side
+        const auto at = [&](HalfedgeId side,
+                            double s) {  // domain point of the side's patch, s along the side
             const auto sides = c.sides(c.face(side));
             const auto k = int(std::find(sides.begin(), sides.end(), side) - sides.begin());
             Barycentric b(0);

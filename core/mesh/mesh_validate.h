@@ -1,6 +1,6 @@
-// Whether a PatchMesh is what it claims to be. Where every patch is certified and the border runs once around the
-// picture, the patches cover it exactly once: a piecewise map whose Jacobian is positive everywhere has every point
-// as often as its degree says, and the degree is the patches' area over the picture's.
+// Whether a PatchMesh is what it claims to be. Where every patch is certified and the border runs once around
+// the picture, the patches cover it exactly once: a piecewise map whose Jacobian is positive everywhere has
+// every point as often as its degree says, and the degree is the patches' area over the picture's.
 #pragma once
 
 #include <string>
@@ -13,27 +13,27 @@ namespace tessera {
 struct MeshValidation {
     std::vector<std::string> violations;  // a sentence each; at most kMaxViolations are kept
     size_t violationCount = 0;
-    double minBernstein = 0;        // smallest coefficient of det J over all patches, relative to the base triangle
-    size_t subdividedPatches = 0;   // certified only after subdividing
-    double areaError = 0;           // |sum of patch areas - picture area| / picture area
-    size_t uncoveredPixels = 0;     // pixel centres in no patch
-    size_t doublePixels = 0;        // pixel centres in several
+    double minBernstein = 0;  // smallest coefficient of det J over all patches, relative to the base triangle
+    size_t subdividedPatches = 0;  // certified only after subdividing
+    double areaError = 0;          // |sum of patch areas - picture area| / picture area
+    size_t uncoveredPixels = 0;    // pixel centres in no patch
+    size_t doublePixels = 0;       // pixel centres in several
 
     bool valid() const { return violationCount == 0; }
 };
 
 constexpr size_t kMaxViolations = 100;
 
-// Checks connectivity, the border (corners and straight sides of the picture), orientation, that the two sides of
-// each edge have the same curve, each patch's certificate, the sum of areas, the splines' sizes and finiteness, the
-// smooth joins, and which patches cover each pixel centre.
+// Checks connectivity, the border (corners and straight sides of the picture), orientation, that the two
+// sides of each edge have the same curve, each patch's certificate, the sum of areas, the splines' sizes and
+// finiteness, the smooth joins, and which patches cover each pixel centre.
 MeshValidation validate(const PatchMesh& mesh);
 
 // The connectivity alone: empty where it is sound, else what is wrong.
 std::vector<std::string> connectivityViolations(const HalfedgeMesh& mesh);
 
-// Mean |difference| of the two sides' colours along non-feature edges inside the picture, weighted by length; in
-// levels of 1/255, all channels together. p95 is the 95th percentile.
+// Mean |difference| of the two sides' colours along non-feature edges inside the picture, weighted by length;
+// in levels of 1/255, all channels together. p95 is the 95th percentile.
 struct SeamStatistics {
     double mean = 0;
     double p95 = 0;

@@ -1,9 +1,9 @@
 // The model: a picture as non-overlapping cubic triangles with a colour spline each (paper section 3).
 //
-// Connectivity, geometry and colour are apart: a HalfedgeMesh whose faces are the patches; vertices and control points
-// on the lattice; a spline per patch. An edge has ONE curve, seen from both of its sides, so that patches cannot gap
-// or overlap along it; a feature curve is one geometry with two colour sides, since each patch has its own colours.
-// Copying a PatchMesh is a snapshot (paged_array.h).
+// Connectivity, geometry and colour are apart: a HalfedgeMesh whose faces are the patches; vertices and
+// control points on the lattice; a spline per patch. An edge has ONE curve, seen from both of its sides, so
+// that patches cannot gap or overlap along it; a feature curve is one geometry with two colour sides, since
+// each patch has its own colours. Copying a PatchMesh is a snapshot (paged_array.h).
 #pragma once
 
 #include <array>
@@ -18,13 +18,13 @@
 
 namespace tessera {
 
-// The inner control points of an edge's cubic, in the direction of HalfedgeMesh::halfedge(edge), and what is known of
-// the edge. Its ends are the vertices.
+// The inner control points of an edge's cubic, in the direction of HalfedgeMesh::halfedge(edge), and what is
+// known of the edge. Its ends are the vertices.
 struct EdgeCurve {
     LatticePoint c1;
     LatticePoint c2;
-    bool feature = false;                // a colour discontinuity lies on it
-    std::array<float, 2> blurSigma{};    // px, at the curve's two ends; 0 is a hard edge
+    bool feature = false;              // a colour discontinuity lies on it
+    std::array<float, 2> blurSigma{};  // px, at the curve's two ends; 0 is a hard edge
 
     bool operator==(const EdgeCurve&) const = default;
 };
@@ -42,8 +42,9 @@ class PatchMesh {
   public:
     PatchMesh() = default;
 
-    // A mesh over `connectivity` with straight edges, default interior points and constant colour 0. `positions` by
-    // vertex id; the picture is [0, width] x [0, height] pixels with `channels` (3 or 4) channels.
+    // A mesh over `connectivity` with straight edges, default interior points and constant colour 0.
+    // `positions` by vertex id; the picture is [0, width] x [0, height] pixels with `channels` (3 or 4)
+    // channels.
     PatchMesh(int width, int height, int channels, HalfedgeMesh connectivity,
               std::span<const LatticePoint> positions);
 
@@ -59,7 +60,8 @@ class PatchMesh {
     const PatchSpline& spline(PatchId p) const { return mSplines[p.index]; }
     const std::vector<SmoothJoin>& smoothJoins() const { return mSmoothJoins; }
 
-    // Another connectivity over the same elements (after a flip, say). The caller keeps the geometry consistent.
+    // Another connectivity over the same elements (after a flip, say). The caller keeps the geometry
+    // consistent.
     void setConnectivity(HalfedgeMesh connectivity) { mConnectivity = std::move(connectivity); }
     void setPosition(VertexId v, LatticePoint p) { mPositions.edit(v.index) = p; }
     void setCurve(EdgeId e, const EdgeCurve& curve) { mCurves.edit(e.index) = curve; }

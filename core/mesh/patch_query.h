@@ -17,12 +17,13 @@ struct Rect {
 // The bounding box of a patch's control points (which holds the patch), in pixels.
 Rect controlBounds(const PatchMesh& mesh, PatchId p);
 
-// The parameters of the patch's point at `point` (px) by Newton's method, whether inside or within about a patch's
-// size outside; none where it does not converge to 1e-9 of the patch's size.
+// The parameters of the patch's point at `point` (px) by Newton's method, whether inside or within about a
+// patch's size outside; none where it does not converge to 1e-9 of the patch's size.
 std::optional<Barycentric> invert(const BezierTriangle& patch, glm::dvec2 point);
 
-// Parameters in the domain for any point: those of the point itself where it lies inside the patch; else the nearest
-// parameters, whose point is within `tolerance` px of it; else those of the nearest point of the sides.
+// Parameters in the domain for any point: those of the point itself where it lies inside the patch; else the
+// nearest parameters, whose point is within `tolerance` px of it; else those of the nearest point of the
+// sides.
 Barycentric nearestParameters(const BezierTriangle& patch, glm::dvec2 point, double tolerance);
 
 struct PatchHit {
@@ -33,10 +34,10 @@ struct PatchHit {
 struct ControlPointHit {
     enum class Kind { Vertex, CurveInner, Interior };
     Kind kind = Kind::Vertex;
-    VertexId vertex;       // Kind::Vertex
-    HalfedgeId halfedge;   // Kind::CurveInner: the control point next to this halfedge's origin
-    PatchId patch;         // Kind::Interior
-    double distance = 0;   // px
+    VertexId vertex;      // Kind::Vertex
+    HalfedgeId halfedge;  // Kind::CurveInner: the control point next to this halfedge's origin
+    PatchId patch;        // Kind::Interior
+    double distance = 0;  // px
 };
 
 struct CurveHit {
@@ -54,7 +55,8 @@ class PatchQuery {
 
     // The patch at an image point; none outside the picture. On a shared edge, the patch of smaller id.
     std::optional<PatchHit> patchAt(glm::dvec2 point) const;
-    // Patches whose control box meets the rectangle, by ascending id (a superset of those that meet it themselves).
+    // Patches whose control box meets the rectangle, by ascending id (a superset of those that meet it
+    // themselves).
     std::vector<PatchId> patchesIn(const Rect& rect) const;
     // Patches whose centre (the point at 1/3, 1/3, 1/3) lies in a closed polygon, even-odd, by ascending id.
     std::vector<PatchId> patchesInPolygon(std::span<const glm::dvec2> polygon) const;

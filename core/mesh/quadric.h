@@ -1,5 +1,5 @@
-// Quadric error metrics (Garland and Heckbert 1997) of several height fields over one plane: the sum over channels of
-// the area-weighted squared distances to planes in (x, y, z_c).
+// Quadric error metrics (Garland and Heckbert 1997) of several height fields over one plane: the sum over
+// channels of the area-weighted squared distances to planes in (x, y, z_c).
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace tessera {
 
-// One accumulated quadric for each of `count` vertices, over `channels` heights. The terms in x and y alone are common
-// to the channels, so a vertex takes 6 + 4 channels numbers.
+// One accumulated quadric for each of `count` vertices, over `channels` heights. The terms in x and y alone
+// are common to the channels, so a vertex takes 6 + 4 channels numbers.
 class QuadricArray {
   public:
     QuadricArray(size_t count, int channels)
@@ -21,7 +21,8 @@ class QuadricArray {
         const float* z;  // `channels` heights, multiplied by `scale`
     };
 
-    // Adds the planes of one triangle, weighted by its area in each channel's space, to each of its corners' quadrics.
+    // Adds the planes of one triangle, weighted by its area in each channel's space, to each of its corners'
+    // quadrics.
     void addTriangle(const size_t corners[3], const Point points[3], double scale);
 
     // quadric[i] += quadric[j].

@@ -20,9 +20,9 @@ const std::array<glm::dvec2, kDefaultCentreCount>& defaultCentres() {
         };
         const double s = 1.0 / 3;
         return std::array<glm::dvec2, kDefaultCentreCount>{
-            third(3, 0, 0), third(0, 3, 0), third(0, 0, 3), third(2, 1, 0),
-            third(1, 2, 0), third(0, 2, 1), third(0, 1, 2), third(1, 0, 2),
-            third(2, 0, 1), third(1, 1, 1), third(2 + s, s, s), third(s, 2 + s, s),
+            third(3, 0, 0),     third(0, 3, 0),         third(0, 0, 3),         third(2, 1, 0),
+            third(1, 2, 0),     third(0, 2, 1),         third(0, 1, 2),         third(1, 0, 2),
+            third(2, 0, 1),     third(1, 1, 1),         third(2 + s, s, s),     third(s, 2 + s, s),
             third(s, s, 2 + s), third(1 + s, 1 + s, s), third(s, 1 + s, 1 + s), third(1 + s, s, 1 + s)};
     }();
     return centres;
@@ -34,7 +34,9 @@ size_t PatchSpline::offset(int c) const {
     return sum;
 }
 
-int PatchSpline::maxTerms(int channels) const { return *std::max_element(terms.begin(), terms.begin() + channels); }
+int PatchSpline::maxTerms(int channels) const {
+    return *std::max_element(terms.begin(), terms.begin() + channels);
+}
 
 PatchSpline constantSpline(std::span<const float> colour) {
     TESSERA_CHECK(colour.size() <= kMaxChannels);

@@ -1,5 +1,5 @@
-// Thin-plate splines over a patch's parametric domain (paper section 4.4, Eqs. 2 to 5). The colour function of a patch
-// is specified in COLOUR.md beside this file.
+// Thin-plate splines over a patch's parametric domain (paper section 4.4, Eqs. 2 to 5). The colour function
+// of a patch is specified in COLOUR.md beside this file.
 #pragma once
 
 #include <array>
@@ -14,11 +14,13 @@ namespace tessera {
 
 constexpr int kMaxChannels = 4;
 
-// The parametric domain is the equilateral triangle of side 1, for every patch: corner a at (0, 0), b at (1, 0), c at
-// (1/2, sqrt(3)/2). (The paper takes the base triangle itself; with a fixed domain, moving a vertex leaves the spline
-// as it is, and the system of Eq. 5 is the same for all patches.)
+// The parametric domain is the equilateral triangle of side 1, for every patch: corner a at (0, 0), b at (1,
+// 0), c at (1/2, sqrt(3)/2). (The paper takes the base triangle itself; with a fixed domain, moving a vertex
+// leaves the spline as it is, and the system of Eq. 5 is the same for all patches.)
 constexpr double kDomainHeight = 0.86602540378443864676;
-inline glm::dvec2 domainPoint(const Barycentric& b) { return {b.y + .5 * b.z, kDomainHeight * b.z}; }
+inline glm::dvec2 domainPoint(const Barycentric& b) {
+    return {b.y + .5 * b.z, kDomainHeight * b.z};
+}
 inline Barycentric barycentricOf(glm::dvec2 d) {
     const double w = d.y / kDomainHeight, v = d.x - .5 * w;
     return {1 - v - w, v, w};
@@ -27,15 +29,15 @@ inline Barycentric barycentricOf(glm::dvec2 d) {
 // phi(s) = s^2 log s (Eq. 3), taken at the squared distance; 0 at 0.
 double tpsKernel(double squaredDistance);
 
-// The 16 centres of the paper's fit: the 10 corners of the domain cut into 3^2 triangles and the middles of the 6 of
-// those that stand upright: 9 on the boundary, 7 inside. In this order: corners a, b, c; two on each of ab, bc, ca;
-// the centroid; the six middles.
+// The 16 centres of the paper's fit: the 10 corners of the domain cut into 3^2 triangles and the middles of
+// the 6 of those that stand upright: 9 on the boundary, 7 inside. In this order: corners a, b, c; two on each
+// of ab, bc, ca; the centroid; the six middles.
 constexpr int kDefaultCentreCount = 16;
 const std::array<glm::dvec2, kDefaultCentreCount>& defaultCentres();
 
-// Colour of one patch: for each channel f(x) = b0 + b1 x.x + b2 x.y + sum over i of alpha_i phi(|x - centre_i|), x in
-// the parametric domain, values in the working space of Image. Channels share one list of centres; a channel with n
-// terms uses its first n. The alphas fulfil sum alpha = 0 and sum alpha centre = 0.
+// Colour of one patch: for each channel f(x) = b0 + b1 x.x + b2 x.y + sum over i of alpha_i phi(|x -
+// centre_i|), x in the parametric domain, values in the working space of Image. Channels share one list of
+// centres; a channel with n terms uses its first n. The alphas fulfil sum alpha = 0 and sum alpha centre = 0.
 struct PatchSpline {
     std::array<uint8_t, kMaxChannels> terms{};  // alphas per channel: 0, or 3 and more
     // The centres where they are not the default ones; else empty.
@@ -59,20 +61,21 @@ PatchSpline constantSpline(std::span<const float> colour);
 // Channel c at a point of the parametric domain, in double: the readable twin of evaluateSplines.
 double evaluateSpline(const PatchSpline& spline, int c, glm::dvec2 at);
 
-// All channels at `count` points of the domain: out[c][i]. Uses the widest vector instructions that the machine has;
-// phi is accurate to 1e-6 on the domain. Thread-safe. (tps_simd.cpp)
+// All channels at `count` points of the domain: out[c][i]. Uses the widest vector instructions that the
+// machine has; phi is accurate to 1e-6 on the domain. Thread-safe. (tps_simd.cpp)
 void evaluateSplines(const PatchSpline& spline, int channels, const float* x, const float* y, size_t count,
                      float* const* out);
 // The same without vector instructions: what a machine without AVX2 gets.
-void evaluateSplinesScalar(const PatchSpline& spline, int channels, const float* x, const float* y, size_t count,
-                           float* const* out);
+void evaluateSplinesScalar(const PatchSpline& spline, int channels, const float* x, const float* y,
+                           size_t count, float* const* out);
 
 // What the machine offers and evaluateSplines uses: "avx2" or "scalar".
 const char* splineInstructionSet();
 
-// Between a spline's n alphas with three polynomial terms and its values at its n >= 3 centres: the n + 3 coefficients
-// (b0, b1, b2, alphas, as in PatchSpline) are `toCoefficients` (row-major, n + 3 rows of n) times the values. The side
-// conditions hold by construction. Fails a check where the centres lie on one line or two coincide.
+// Between a spline's n alphas with three polynomial terms and its values at its n >= 3 centres: the n + 3
+// coefficients (b0, b1, b2, alphas, as in PatchSpline) are `toCoefficients` (row-major, n + 3 rows of n)
+// times the values. The side conditions hold by construction. Fails a check where the centres lie on one line
+// or two coincide.
 struct NodalBasis {
     int n = 0;
     std::vector<double> toCoefficients;

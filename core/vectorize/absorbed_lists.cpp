@@ -11,12 +11,16 @@ namespace {
 // Loops may double a list at each contraction; past this length it is pruned at once instead of at the end.
 constexpr uint32_t kLongest = 4096;
 constexpr uint32_t kFlat = 0;  // the length of a node that stands for a flat list
-// What a flat list adds to the length of those that hold it: not its own length, or a path that is long without
-// loops would be pruned, and kept, anew at each contraction.
+// What a flat list adds to the length of those that hold it: not its own length, or a path that is long
+// without loops would be pruned, and kept, anew at each contraction.
 constexpr uint32_t kFlatShare = 64;
 
-uint32_t packed(AbsorbedLists::List list) { return list.node << 1 | uint32_t(list.backwards); }
-AbsorbedLists::List unpacked(uint32_t bits) { return {bits >> 1, (bits & 1) != 0}; }
+uint32_t packed(AbsorbedLists::List list) {
+    return list.node << 1 | uint32_t(list.backwards);
+}
+AbsorbedLists::List unpacked(uint32_t bits) {
+    return {bits >> 1, (bits & 1) != 0};
+}
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// A priority queue of millions of contractions of which only the cheapest are ever compared: those below a threshold
-// form a heap small enough for the cache, the rest wait unsorted until the heap is empty.
+// A priority queue of millions of contractions of which only the cheapest are ever compared: those below a
+// threshold form a heap small enough for the cache, the rest wait unsorted until the heap is empty.
 #pragma once
 
 #include <algorithm>
@@ -37,8 +37,8 @@ class CandidateQueue {
         std::push_heap(mHeap.begin(), mHeap.end(), after);
     }
 
-    // Takes the first candidate out. `alive(candidate)` tells which still count: the others may be dropped at any time.
-    // The queue must not be empty.
+    // Takes the first candidate out. `alive(candidate)` tells which still count: the others may be dropped at
+    // any time. The queue must not be empty.
     template <class Alive>
     Candidate pop(Alive&& alive) {
         if (mHeap.empty()) refill(alive);

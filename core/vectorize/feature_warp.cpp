@@ -10,8 +10,8 @@ namespace tessera {
 
 namespace {
 
-// Polylines and curves are at most a pixel or two apart, so the first lattice may be fine: far points stay where they
-// are.
+// Polylines and curves are at most a pixel or two apart, so the first lattice may be fine: far points stay
+// where they are.
 constexpr double kSpacings[] = {4, 2, 1};
 constexpr double kInjectiveShare = .48;
 
@@ -30,8 +30,10 @@ struct Cell {
 
 Cell cellOf(glm::dvec2 point, double spacing, int columns, int rows) {
     const glm::dvec2 at = point / spacing;
-    const int column = std::clamp(int(std::floor(at.x)), 0, columns - 4), row = std::clamp(int(std::floor(at.y)), 0, rows - 4);
-    return {column, row, splineWeights(std::clamp(at.x - column, 0.0, 1.0)), splineWeights(std::clamp(at.y - row, 0.0, 1.0))};
+    const int column = std::clamp(int(std::floor(at.x)), 0, columns - 4),
+              row = std::clamp(int(std::floor(at.y)), 0, rows - 4);
+    return {column, row, splineWeights(std::clamp(at.x - column, 0.0, 1.0)),
+            splineWeights(std::clamp(at.y - row, 0.0, 1.0))};
 }
 
 }  // namespace
@@ -42,7 +44,8 @@ glm::dvec2 FeatureWarp::Level::displacement(glm::dvec2 point) const {
     for (size_t j = 0; j < 4; ++j)
         for (size_t i = 0; i < 4; ++i)
             sum += cell.wx[i] * cell.wy[j] *
-                   glm::dvec2(controls[size_t(cell.row + int(j)) * size_t(columns) + size_t(cell.column + int(i))]);
+                   glm::dvec2(
+                       controls[size_t(cell.row + int(j)) * size_t(columns) + size_t(cell.column + int(i))]);
     return sum;
 }
 
@@ -61,7 +64,8 @@ FeatureWarp::Level FeatureWarp::approximate(double width, double height, double 
         for (size_t j = 0; j < 4; ++j)
             for (size_t i = 0; i < 4; ++i) {
                 const double w = cell.wx[i] * cell.wy[j];
-                const size_t k = size_t(cell.row + int(j)) * size_t(level.columns) + size_t(cell.column + int(i));
+                const size_t k =
+                    size_t(cell.row + int(j)) * size_t(level.columns) + size_t(cell.column + int(i));
                 numerator[k] += w * w * (w / squares) * (pair.to - pair.from);
                 denominator[k] += w * w;
             }
@@ -97,7 +101,8 @@ std::vector<PointPair> featurePairs(const PatchMesh& mesh, std::span<const std::
         const auto& path = paths[e.index];
         const BezierCurve curve = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e)));
         std::vector<double> chord(path.size(), 0);
-        for (size_t i = 1; i < path.size(); ++i) chord[i] = chord[i - 1] + glm::distance(path[i - 1], path[i]);
+        for (size_t i = 1; i < path.size(); ++i)
+            chord[i] = chord[i - 1] + glm::distance(path[i - 1], path[i]);
         // The curve's own length by a fine polyline, to invert arc length.
         constexpr int kSteps = 64;
         std::array<double, kSteps + 1> arc{};
@@ -107,7 +112,8 @@ std::vector<PointPair> featurePairs(const PatchMesh& mesh, std::span<const std::
         const int count = std::max(1, int(std::ceil(chord.back())));
         for (int k = 0; k <= count; ++k) {
             const double share = double(k) / count;
-            const auto piece = [share](auto begin, auto end) {  // the interval of a length table that holds the share
+            const auto piece = [share](auto begin,
+                                       auto end) {  // the interval of a length table that holds the share
                 const double s = share * *(end - 1);
                 const auto upper = std::clamp(std::upper_bound(begin, end, s), begin + 1, end - 1);
                 const double span = *upper - *(upper - 1);

@@ -36,13 +36,15 @@ class Grid {
 
 GradientField diZenzoGradient(const Image& image, double sigmaPx, const std::stop_token& stop) {
     const int w = image.width(), h = image.height();
-    GradientField field{w, h, std::vector<float>(image.planeSize()), std::vector<glm::vec2>(image.planeSize())};
+    GradientField field{w, h, std::vector<float>(image.planeSize()),
+                        std::vector<glm::vec2>(image.planeSize())};
     std::vector<cv::Mat> dx, dy;
     for (int c = 0; c < image.channels() && !stop.stop_requested(); ++c) {
         const cv::Mat plane(h, w, CV_32F, const_cast<float*>(image.plane(c).data()));
         cv::Mat smooth, x, y;
         cv::GaussianBlur(plane, smooth, cv::Size(), sigmaPx, sigmaPx, cv::BORDER_REPLICATE);
-        const cv::Mat difference = (cv::Mat_<float>(1, 3) << -.5F, 0.F, .5F), one = cv::Mat::ones(1, 1, CV_32F);
+        const cv::Mat difference = (cv::Mat_<float>(1, 3) << -.5F, 0.F, .5F),
+                      one = cv::Mat::ones(1, 1, CV_32F);
         cv::sepFilter2D(smooth, x, CV_32F, difference, one, cv::Point(-1, -1), 0, cv::BORDER_REPLICATE);
         cv::sepFilter2D(smooth, y, CV_32F, one, difference, cv::Point(-1, -1), 0, cv::BORDER_REPLICATE);
         dx.push_back(x);
@@ -75,7 +77,8 @@ std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, doubl
                                 const std::stop_token& stop) {
     const int w = gradient.width, h = gradient.height;
     const auto magnitudeAt = [&](double x, double y) {
-        const int x0 = std::clamp(int(std::floor(x)), 0, w - 2), y0 = std::clamp(int(std::floor(y)), 0, h - 2);
+        const int x0 = std::clamp(int(std::floor(x)), 0, w - 2),
+                  y0 = std::clamp(int(std::floor(y)), 0, h - 2);
         const double fx = x - x0, fy = y - y0;
         const auto value = [&](int col, int row) { return double(gradient.at(col, row)); };
         return (1 - fy) * ((1 - fx) * value(x0, y0) + fx * value(x0 + 1, y0)) +
@@ -85,7 +88,8 @@ std::vector<uint8_t> cannyEdges(const GradientField& gradient, double low, doubl
     Grid grid(edges, w, h);
     std::vector<glm::ivec2> strong;
     constexpr uint8_t kMaximum = 1, kAccepted = 2;
-    // The outermost pixels have no gradient across them, and a chain there would leave no room for its subpixels.
+    // The outermost pixels have no gradient across them, and a chain there would leave no room for its
+    // subpixels.
     for (int y = 1; y + 1 < h && !stop.stop_requested(); ++y)
         for (int x = 1; x + 1 < w; ++x) {
             const double m = gradient.at(x, y);
@@ -129,7 +133,8 @@ void thin(std::vector<uint8_t>& edges, int width, int height, const std::stop_to
                     count += n[i];
                     transitions += !n[i] && n[(i + 1) % 8];
                 }
-                // At least 3, not 2: else the ends of a staircase go, again and again, until nothing is left of it.
+                // At least 3, not 2: else the ends of a staircase go, again and again, until nothing is left
+                // of it.
                 if (count < 3 || count > 6 || transitions != 1) continue;
                 const bool free = pass == 0 ? !(north && east && south) && !(east && south && west)
                                             : !(north && east && west) && !(north && south && west);
@@ -144,7 +149,8 @@ void thin(std::vector<uint8_t>& edges, int width, int height, const std::stop_to
     for (const glm::ivec2 p : set) {
         const auto n = grid.neighbours(p);
         for (size_t i = 0; i < 8; i += 2) {
-            const bool corner = n[i] && n[(i + 2) % 8] && !n[(i + 4) % 8] && !n[(i + 5) % 8] && !n[(i + 6) % 8];
+            const bool corner =
+                n[i] && n[(i + 2) % 8] && !n[(i + 4) % 8] && !n[(i + 5) % 8] && !n[(i + 6) % 8];
             if (!corner) continue;
             grid.clear(p);
             break;
@@ -209,7 +215,8 @@ std::vector<PixelChain> linkChains(const std::vector<uint8_t>& edges, int width,
 void chooseSide(PixelChain& chain, const Image& image) {
     const int n = int(chain.pixels.size());
     const auto pixel = [&](int i) {
-        return chain.closed ? chain.pixels[size_t((i % n + n) % n)] : chain.pixels[size_t(std::clamp(i, 0, n - 1))];
+        return chain.closed ? chain.pixels[size_t((i % n + n) % n)]
+                            : chain.pixels[size_t(std::clamp(i, 0, n - 1))];
     };
     double lead = 0;  // of the positive side
     for (int i = 0; i < n; ++i) {
@@ -241,7 +248,8 @@ Result<std::vector<PixelChain>> detectFeatures(const Image& image, const Vectori
     // Below a hundredth of a level a "largest gradient" is rounding.
     constexpr double kFlat = .01 / 255;
     if (largest < kFlat) return chains;
-    auto edges = cannyEdges(gradient, settings.cannyLow * largest, settings.cannyHigh * largest, progress.stopToken());
+    auto edges =
+        cannyEdges(gradient, settings.cannyLow * largest, settings.cannyHigh * largest, progress.stopToken());
     if (!progress.step(.5)) return stopped();
     thin(edges, image.width(), image.height(), progress.stopToken());
     removeJunctions(edges, gradient);
@@ -253,9 +261,8 @@ Result<std::vector<PixelChain>> detectFeatures(const Image& image, const Vectori
         chooseSide(chain, image);
         pixels += chain.pixels.size();
     }
-    report.figures = {{"largest gradient", largest},
-                      {"chains", double(chains.size())},
-                      {"chain pixels", double(pixels)}};
+    report.figures = {
+        {"largest gradient", largest}, {"chains", double(chains.size())}, {"chain pixels", double(pixels)}};
     return chains;
 }
 

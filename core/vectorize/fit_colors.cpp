@@ -33,8 +33,8 @@ ConstraintSystem makeSystem(int n, unsigned pairedSides) {
             a(r, 3 + i) = tpsKernel(d.x * d.x + d.y * d.y);
         }
     }
-    // Coefficients that fulfil the side conditions are exactly those that interpolate some values at the centres: the
-    // columns of the nodal basis span the null space of the conditions.
+    // Coefficients that fulfil the side conditions are exactly those that interpolate some values at the
+    // centres: the columns of the nodal basis span the null space of the conditions.
     const NodalBasis& nodal = defaultNodalBasis();
     const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> basis(
         nodal.toCoefficients.data(), kCoefficients, kDefaultCentreCount);
@@ -83,8 +83,9 @@ std::vector<Barycentric> constraintPoints(int n, unsigned pairedSides) {
     return points;
 }
 
-Result<PatchMesh> fitColors(PatchMesh mesh, std::span<const std::vector<glm::dvec2>> paths, const Image& image,
-                            const VectorizeSettings& settings, StageReport& report, Progress& progress) {
+Result<PatchMesh> fitColors(PatchMesh mesh, std::span<const std::vector<glm::dvec2>> paths,
+                            const Image& image, const VectorizeSettings& settings, StageReport& report,
+                            Progress& progress) {
     const bool warped = report.variant != "sampled-nowarp";
     const FeatureWarp warp(image.width(), image.height(),
                            warped ? featurePairs(mesh, paths) : std::vector<PointPair>{});
@@ -113,7 +114,8 @@ Result<PatchMesh> fitColors(PatchMesh mesh, std::span<const std::vector<glm::dve
             const Eigen::MatrixXd solution = system.solve * colours;
             for (int c = 0; c < image.channels(); ++c) {
                 splines[i].terms[size_t(c)] = kDefaultCentreCount;
-                for (int k = 0; k < kCoefficients; ++k) splines[i].coefficients.push_back(float(solution(k, c)));
+                for (int k = 0; k < kCoefficients; ++k)
+                    splines[i].coefficients.push_back(float(solution(k, c)));
             }
         }
         done += end - begin;

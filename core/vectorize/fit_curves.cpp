@@ -17,7 +17,8 @@ namespace tessera {
 
 namespace {
 
-// Samples of a patch: the corners of its parametric domain cut into kGrid^2 triangles; of a curve: as many intervals.
+// Samples of a patch: the corners of its parametric domain cut into kGrid^2 triangles; of a curve: as many
+// intervals.
 constexpr int kGrid = 8;
 constexpr int kMaxSweeps = 50;
 constexpr int kMaxEvaluations = 60;
@@ -50,7 +51,8 @@ const std::vector<DerivativeBasis>& sampleBases() {
         std::vector<DerivativeBasis> all;
         for (int i = 0; i <= kGrid; ++i)
             for (int j = 0; i + j <= kGrid; ++j)
-                all.push_back(derivativeBasis({double(i) / kGrid, double(j) / kGrid, double(kGrid - i - j) / kGrid}));
+                all.push_back(
+                    derivativeBasis({double(i) / kGrid, double(j) / kGrid, double(kGrid - i - j) / kGrid}));
         return all;
     }();
     return bases;
@@ -138,7 +140,8 @@ std::vector<std::vector<EdgeId>> colourEdges(const HalfedgeMesh& mesh, std::span
     std::vector<int> colourOf(mesh.edgeCapacity(), -1);
     for (const EdgeId e : edges) {
         uint32_t taken = 0;
-        for (const HalfedgeId h : {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))}) {
+        for (const HalfedgeId h :
+             {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))}) {
             if (!mesh.face(h).valid()) continue;
             for (const HalfedgeId side : mesh.sides(mesh.face(h))) {
                 const int colour = colourOf[HalfedgeMesh::edge(side).index];
@@ -173,7 +176,7 @@ class CurveOptimizer {
     const BaseDomain& mBase;
     const HalfedgeMesh& mConnectivity;
     BoundaryObjective::Weights mWeights;
-    std::vector<EdgeId> mFree;  // edges with a patch on either side that are no features
+    std::vector<EdgeId> mFree;                   // edges with a patch on either side that are no features
     std::vector<BezierCurve> mInitial, mCurves;  // by edge
     std::vector<glm::dvec2> mInteriors;          // by patch
 };
@@ -236,8 +239,8 @@ double CurveOptimizer::optimizeEdge(EdgeId e) {
     try {
         solver.optimize(x, value);
     } catch (const std::exception&) {
-        // L-BFGS reports a line search that rounding stopped as a failure; x is then the best point it saw, or worse
-        // than the start, which the comparison below finds.
+        // L-BFGS reports a line search that rounding stopped as a failure; x is then the best point it saw,
+        // or worse than the start, which the comparison below finds.
         value = objective.evaluate(x.data(), nullptr);
     }
     if (!(value < before)) return 0;
@@ -306,8 +309,11 @@ PatchMesh CurveOptimizer::certifiedMesh(StageReport& report) const {
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
         const auto straight = mBase.mesh.controlPoints(h);
         const BezierCurve& curve = mCurves[e.index];
-        const auto at = [&](size_t i) { return toLattice(glm::mix(toPixels(straight[i]), curve.p[i], kept[e.index])); };
-        mesh.setInnerControlPoints(h, kept[e.index] > 0 ? at(1) : straight[1], kept[e.index] > 0 ? at(2) : straight[2]);
+        const auto at = [&](size_t i) {
+            return toLattice(glm::mix(toPixels(straight[i]), curve.p[i], kept[e.index]));
+        };
+        mesh.setInnerControlPoints(h, kept[e.index] > 0 ? at(1) : straight[1],
+                                   kept[e.index] > 0 ? at(2) : straight[2]);
     };
     for (const EdgeId e : mFree) place(e);
 
@@ -330,9 +336,11 @@ PatchMesh CurveOptimizer::certifiedMesh(StageReport& report) const {
             const size_t before = pull.size();
             for (const HalfedgeId side : mConnectivity.sides(p)) {
                 const EdgeId e = HalfedgeMesh::edge(side);
-                if (!mBase.mesh.curve(e).feature && !mConnectivity.onBorder(e) && kept[e.index] > 0) pull.push_back(e);
+                if (!mBase.mesh.curve(e).feature && !mConnectivity.onBorder(e) && kept[e.index] > 0)
+                    pull.push_back(e);
             }
-            TESSERA_CHECK(pull.size() > before);  // with its sides straight a patch is the base domain's, certified
+            TESSERA_CHECK(pull.size() >
+                          before);  // with its sides straight a patch is the base domain's, certified
         }
         std::sort(pull.begin(), pull.end());
         pull.erase(std::unique(pull.begin(), pull.end()), pull.end());
@@ -341,19 +349,22 @@ PatchMesh CurveOptimizer::certifiedMesh(StageReport& report) const {
             constexpr double kShrink = .7, kLeast = .05;
             kept[e.index] = kept[e.index] * kShrink < kLeast ? 0 : kept[e.index] * kShrink;
             place(e);
-            for (const HalfedgeId h : {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))})
+            for (const HalfedgeId h :
+                 {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))})
                 again[mConnectivity.face(h).index] = 1;
         }
         open.clear();
         for (uint32_t p = 0; p < again.size(); ++p)
             if (again[p]) open.push_back(PatchId(p));
     }
-    const auto pulledCurves = std::count_if(mFree.begin(), mFree.end(), [&](EdgeId e) { return kept[e.index] < 1; });
+    const auto pulledCurves =
+        std::count_if(mFree.begin(), mFree.end(), [&](EdgeId e) { return kept[e.index] < 1; });
     double deviation = 0;
     mesh.forEachEdge([&](EdgeId e) {
         if (mesh.curve(e).feature)
-            deviation = std::max(deviation, maxDistance(toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e))),
-                                                        mBase.paths[e.index]));
+            deviation = std::max(
+                deviation,
+                maxDistance(toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e))), mBase.paths[e.index]));
     });
     report.figures.emplace_back("curves", double(mFree.size()));
     report.figures.emplace_back("patches uncertified after Eq. 1", double(folded));

@@ -13,20 +13,23 @@ namespace tessera {
 
 namespace {
 
-// A subpixel: the middle of the grid edge between a vertex on the positive side of the feature and one on the negative.
+// A subpixel: the middle of the grid edge between a vertex on the positive side of the feature and one on the
+// negative.
 struct Subpixel {
     uint32_t positive;
     uint32_t negative;
 };
 
-// The grid of pixel centres and the ring around it: vertex (i, j), 0 <= i <= width + 1, is pixel (i - 1, j - 1) inside.
+// The grid of pixel centres and the ring around it: vertex (i, j), 0 <= i <= width + 1, is pixel (i - 1, j -
+// 1) inside.
 class PixelGrid {
   public:
     PixelGrid(const Image& image, const std::vector<PixelChain>& features) : mImage(image) {
         mDiagonals.resize(size_t(columns() - 1) * size_t(rows() - 1));
         for (int j = 0; j + 1 < rows(); ++j)
             for (int i = 0; i + 1 < columns(); ++i)
-                mDiagonals[cell(i, j)] = difference({i, j}, {i + 1, j + 1}) > difference({i + 1, j}, {i, j + 1});
+                mDiagonals[cell(i, j)] =
+                    difference({i, j}, {i + 1, j + 1}) > difference({i + 1, j}, {i, j + 1});
         // A chain runs along edges of the triangulation, also where it steps diagonally.
         for (const PixelChain& chain : features)
             for (size_t k = 0; k + 1 < chain.pixels.size() + chain.closed; ++k) {
@@ -74,8 +77,8 @@ class PixelGrid {
     std::vector<bool> mDiagonals;
 };
 
-// Neighbours of chain vertex `at` on the positive (or negative) side of the way before -> at -> after, in the order
-// in which the way passes them.
+// Neighbours of chain vertex `at` on the positive (or negative) side of the way before -> at -> after, in the
+// order in which the way passes them.
 std::vector<uint32_t> sideFan(const PixelGrid& grid, glm::ivec2 before, glm::ivec2 at, glm::ivec2 after,
                               bool positive) {
     const auto direction = [&](glm::ivec2 to) {
@@ -84,7 +87,8 @@ std::vector<uint32_t> sideFan(const PixelGrid& grid, glm::ivec2 before, glm::ive
     const int step = positive ? 7 : 1;  // from `before` towards `after` on that side
     std::vector<uint32_t> fan;
     for (int d = (direction(before) + step) % 8; d != direction(after); d = (d + step) % 8)
-        if (grid.joined(at, at + kNeighbours8[size_t(d)])) fan.push_back(grid.vertex(at + kNeighbours8[size_t(d)]));
+        if (grid.joined(at, at + kNeighbours8[size_t(d)]))
+            fan.push_back(grid.vertex(at + kNeighbours8[size_t(d)]));
     return fan;
 }
 
@@ -98,8 +102,9 @@ uint32_t opposite(const PixelGrid& grid, glm::ivec2 a, glm::ivec2 b, bool positi
     TESSERA_CHECK(false);
 }
 
-// Follows the line half a pixel off the chain through the triangulation, as marching cubes would with the chain's
-// pixels counted to the side away from it: a subpixel on each grid edge that joins the two sides, in order.
+// Follows the line half a pixel off the chain through the triangulation, as marching cubes would with the
+// chain's pixels counted to the side away from it: a subpixel on each grid edge that joins the two sides, in
+// order.
 std::vector<Subpixel> traceSubpixels(const PixelGrid& grid, const PixelChain& chain) {
     std::vector<Subpixel> trace;
     const auto n = chain.pixels.size();
@@ -111,21 +116,24 @@ std::vector<Subpixel> traceSubpixels(const PixelGrid& grid, const PixelChain& ch
         if (chain.closed || (k > 0 && k + 1 < n))
             fan = sideFan(grid, at(k + n - 1), at(k), at(k + 1), positive);
         else  // an end: the triangle beside the chain's first or last edge
-            fan = {k == 0 ? opposite(grid, at(0), at(1), positive) : opposite(grid, at(k), at(k - 1), !positive)};
+            fan = {k == 0 ? opposite(grid, at(0), at(1), positive)
+                          : opposite(grid, at(k), at(k - 1), !positive)};
         for (const uint32_t q : fan) trace.push_back(positive ? Subpixel{q, self} : Subpixel{self, q});
     }
     return trace;
 }
 
-uint64_t edgeKey(uint32_t a, uint32_t b) { return uint64_t(std::min(a, b)) << 32 | std::max(a, b); }
+uint64_t edgeKey(uint32_t a, uint32_t b) {
+    return uint64_t(std::min(a, b)) << 32 | std::max(a, b);
+}
 
 constexpr uint32_t kStopInterval = 4096;
 
 using CutEdges = std::unordered_map<uint64_t, uint32_t>;  // grid edge -> its subpixel
 
 // A triangle of the grid with its subpixels, by the patterns of Fig. 3(d).
-void retriangulate(std::array<uint32_t, 3> t, const CutEdges& cuts, const std::vector<LatticePoint>& positions,
-                   std::vector<std::array<uint32_t, 3>>& out) {
+void retriangulate(std::array<uint32_t, 3> t, const CutEdges& cuts,
+                   const std::vector<LatticePoint>& positions, std::vector<std::array<uint32_t, 3>>& out) {
     std::array<uint32_t, 3> cut{};  // on the side from corner s to s + 1; none is the maximum
     int count = 0;
     for (size_t s = 0; s < 3; ++s) {
@@ -163,7 +171,8 @@ void retriangulate(std::array<uint32_t, 3> t, const CutEdges& cuts, const std::v
 }
 
 // Marks the chain's edges and gives the corners around its vertices their copies (Fig. 4).
-void splitAlong(ChannelMeshes& m, uint32_t chainIndex, const std::vector<Subpixel>& trace, const PixelGrid& grid) {
+void splitAlong(ChannelMeshes& m, uint32_t chainIndex, const std::vector<Subpixel>& trace,
+                const PixelGrid& grid) {
     const SubpixelChain& chain = m.chains[chainIndex];
     const auto n = uint32_t(chain.vertices.size());
     const uint32_t edges = chain.closed ? n : n - 1;
@@ -196,8 +205,8 @@ void splitAlong(ChannelMeshes& m, uint32_t chainIndex, const std::vector<Subpixe
     }
 }
 
-// Taubin's lambda | mu smoothing of the heights of copies within `radius` px of features, along edges whose two ends
-// lie on the same side.
+// Taubin's lambda | mu smoothing of the heights of copies within `radius` px of features, along edges whose
+// two ends lie on the same side.
 void fair(ChannelMeshes& m, double radius) {
     constexpr double kLambda = .33, kMu = -.34;  // pass band .1 (Taubin 1995)
     constexpr int kRounds = 4;
@@ -316,7 +325,8 @@ Result<ChannelMeshes> buildInitialMesh(const Image& image, const std::vector<Pix
             m.heights[size_t(v) * size_t(m.channels) + size_t(c)] = grid.colour(grid.place(v), c);
     }
     m.copyOfCorner.resize(2 * m.mesh.edgeCapacity());
-    for (uint32_t h = 0; h < m.copyOfCorner.size(); ++h) m.copyOfCorner[h] = m.mesh.origin(HalfedgeId(h)).index;
+    for (uint32_t h = 0; h < m.copyOfCorner.size(); ++h)
+        m.copyOfCorner[h] = m.mesh.origin(HalfedgeId(h)).index;
     m.partOfEdge.assign(m.mesh.edgeCapacity(), -1);
     for (uint32_t k = 0; k < m.chains.size(); ++k) splitAlong(m, k, traces[k], grid);
     if (!progress.step(.9)) return stopped();

@@ -1,5 +1,5 @@
-// The initial channel meshes (paper section 4.1, Figs. 3 and 4): the pixel grid, triangulated, with subpixels inserted
-// along features and split into dual vertices.
+// The initial channel meshes (paper section 4.1, Figs. 3 and 4): the pixel grid, triangulated, with subpixels
+// inserted along features and split into dual vertices.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ enum class VertexKind : uint8_t {
 };
 constexpr int kVertexKinds = 5;
 
-// A part of a feature as the simplification sees it: the vertices from..to (in steps of one, wrapping where the chain
-// is closed) of a chain of subpixels.
+// A part of a feature as the simplification sees it: the vertices from..to (in steps of one, wrapping where
+// the chain is closed) of a chain of subpixels.
 struct ChainPart {
     uint32_t chain = 0;
     uint32_t from = 0;
@@ -38,9 +38,10 @@ struct SubpixelChain {
     bool closed = false;
 };
 
-// All channel meshes at once: they share connectivity and (x, y) and differ in their heights alone. Where the paper
-// cuts the meshes open along features, the connectivity here stays whole, and a vertex on a feature has several
-// COPIES instead: one for each sector of faces between features. A dual pair is two copies; a junction would have more.
+// All channel meshes at once: they share connectivity and (x, y) and differ in their heights alone. Where the
+// paper cuts the meshes open along features, the connectivity here stays whole, and a vertex on a feature has
+// several COPIES instead: one for each sector of faces between features. A dual pair is two copies; a
+// junction would have more.
 struct ChannelMeshes {
     int width = 0;
     int height = 0;
@@ -48,8 +49,9 @@ struct ChannelMeshes {
     HalfedgeMesh mesh;
     std::vector<LatticePoint> positions;  // by vertex
     std::vector<VertexKind> kinds;        // by vertex
-    // By halfedge: the copy of its origin that the corner of its face belongs to. Copies 0 .. vertexCount - 1 are the
-    // vertices' own (for a feature, that on the positive side of the chain); the rest are further copies.
+    // By halfedge: the copy of its origin that the corner of its face belongs to. Copies 0 .. vertexCount - 1
+    // are the vertices' own (for a feature, that on the positive side of the chain); the rest are further
+    // copies.
     std::vector<uint32_t> copyOfCorner;
     std::vector<float> heights;  // by copy, `channels` values each: the colour, 0..1
     std::vector<SubpixelChain> chains;
@@ -61,10 +63,11 @@ struct ChannelMeshes {
     bool isFeature(EdgeId e) const { return partOfEdge[e.index] >= 0; }
 };
 
-// Builds the meshes over [0, W] x [0, H]: pixel centres at +.5, and a ring half a pixel out that carries the colours
-// of the nearest pixels. With settings.fairingRadiusPx > 0, heights near features are faired (Taubin 1995), each copy
-// with neighbours on its own side.
+// Builds the meshes over [0, W] x [0, H]: pixel centres at +.5, and a ring half a pixel out that carries the
+// colours of the nearest pixels. With settings.fairingRadiusPx > 0, heights near features are faired (Taubin
+// 1995), each copy with neighbours on its own side.
 Result<ChannelMeshes> buildInitialMesh(const Image& image, const std::vector<PixelChain>& features,
-                                       const VectorizeSettings& settings, StageReport& report, Progress& progress);
+                                       const VectorizeSettings& settings, StageReport& report,
+                                       Progress& progress);
 
 }  // namespace tessera

@@ -10,8 +10,8 @@
 
 namespace tessera {
 
-// A method is a choice of one variant for each stage; a setting changes a number of a stage. Defaults are the paper's
-// where it states them.
+// A method is a choice of one variant for each stage; a setting changes a number of a stage. Defaults are the
+// paper's where it states them.
 struct VectorizeSettings {
     std::string method = "paper";
     int patches = 2000;  // wanted; at least 2
@@ -29,9 +29,9 @@ struct VectorizeSettings {
     double fairingRadiusPx = 0;
 
     // Simplification (4.2).
-    double colourWeight = 5.0;        // px per unit of colour (0..1) when colour is a height
-    double curveTolerancePx = 1;      // of a feature's cubic to its polyline
-    double cornerDegrees = 40;        // a turn at a join sharper than this stays a corner
+    double colourWeight = 5.0;    // px per unit of colour (0..1) when colour is a height
+    double curveTolerancePx = 1;  // of a feature's cubic to its polyline
+    double cornerDegrees = 40;    // a turn at a join sharper than this stays a corner
 
     // Boundary curves (4.3), Eq. 1.
     double weightPositive = .2;  // w_p
@@ -44,7 +44,8 @@ struct VectorizeSettings {
     bool operator==(const VectorizeSettings&) const = default;
 };
 
-// One `key=value` for each setting but `threads` (which changes nothing), in a fixed order: what a document keeps.
+// One `key=value` for each setting but `threads` (which changes nothing), in a fixed order: what a document
+// keeps.
 std::vector<std::pair<std::string, std::string>> toKeyValues(const VectorizeSettings& settings);
 // Sets one of them; Usage for an unknown key or a value out of range, with the reason.
 Result<void> setKeyValue(VectorizeSettings& settings, const std::string& key, const std::string& value);

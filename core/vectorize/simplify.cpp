@@ -20,11 +20,11 @@ CollapseRule collapseRule(VertexKind from, VertexKind to) {
     using enum CollapseRule;
     constexpr CollapseRule kRules[kVertexKinds][kVertexKinds] = {
         // to: Interior, Feature, FeatureEnd, Border, Corner
-        {Free, Free, Free, Free, Free},                  // from Interior
+        {Free, Free, Free, Free, Free},                     // from Interior
         {Never, AlongFeature, AlongFeature, Never, Never},  // from Feature
-        {Never, Never, Never, Never, Never},             // from FeatureEnd
-        {Never, Never, Never, AlongBorder, AlongBorder},  // from Border
-        {Never, Never, Never, Never, Never},             // from Corner
+        {Never, Never, Never, Never, Never},                // from FeatureEnd
+        {Never, Never, Never, AlongBorder, AlongBorder},    // from Border
+        {Never, Never, Never, Never, Never},                // from Corner
     };
     return kRules[size_t(from)][size_t(to)];
 }
@@ -35,8 +35,8 @@ namespace {
 constexpr double kMinHeightPx = .1;
 // After this many failures an edge waits until a contraction beside it changes its surroundings.
 constexpr uint8_t kMaxFailures = 4;
-// Contractions below this error (a sixtieth of a level over a pixel) go on past the wanted number: a flat picture needs
-// no more patches than its features do.
+// Contractions below this error (a sixtieth of a level over a pixel) go on past the wanted number: a flat
+// picture needs no more patches than its features do.
 constexpr double kFreeError = 1e-7;
 
 class Simplifier {
@@ -70,8 +70,10 @@ class Simplifier {
     bool tryCollapse(HalfedgeId h);
     void collapse(HalfedgeId h, const std::optional<Refit>& refit, std::array<bool, 2> keepOrigin);
     std::optional<Refit> refit(HalfedgeId h) const;
-    bool facesStayValid(HalfedgeId h, const std::optional<Refit>& refit, std::array<bool, 2> keepOrigin) const;
-    bool faceValid(const std::array<VertexId, 3>& corners, const std::array<EdgeId, 3>& sides, const Refit* refit) const;
+    bool facesStayValid(HalfedgeId h, const std::optional<Refit>& refit,
+                        std::array<bool, 2> keepOrigin) const;
+    bool faceValid(const std::array<VertexId, 3>& corners, const std::array<EdgeId, 3>& sides,
+                   const Refit* refit) const;
     std::array<LatticePoint, 4> sideCurve(VertexId a, VertexId b, EdgeId e, const Refit* refit) const;
     std::vector<glm::dvec2> polyline(const ChainPart& part) const;
     VertexId chainVertex(const ChainPart& part, bool end) const {
@@ -94,13 +96,14 @@ class Simplifier {
     const VectorizeSettings& mSettings;
     QuadricArray mQuadrics;
     AbsorbedLists mAbsorbed;
-    std::vector<AbsorbedLists::List> mLists;                // by edge
-    std::vector<std::array<LatticePoint, 2>> mInner;        // by part, in the direction of the chain
+    std::vector<AbsorbedLists::List> mLists;          // by edge
+    std::vector<std::array<LatticePoint, 2>> mInner;  // by part, in the direction of the chain
     CandidateQueue mQueue;
-    std::vector<uint32_t> mStamps;    // by edge: older candidates are void
-    std::vector<uint8_t> mFailures;   // by edge
-    // By edge: whether it has a valid candidate, and whether that one's cost is out of date. Quadrics only accumulate,
-    // so that an outdated cost is too low, and it is early enough to mend it when it comes to the top.
+    std::vector<uint32_t> mStamps;   // by edge: older candidates are void
+    std::vector<uint8_t> mFailures;  // by edge
+    // By edge: whether it has a valid candidate, and whether that one's cost is out of date. Quadrics only
+    // accumulate, so that an outdated cost is too low, and it is early enough to mend it when it comes to the
+    // top.
     enum class Queued : uint8_t { No, Yes, Outdated };
     std::vector<Queued> mQueued;
     size_t mCollapses = 0, mRejected = 0, mRefitsRejected = 0;
@@ -125,10 +128,14 @@ bool Simplifier::allowed(HalfedgeId h) const {
     const VertexKind from = m.kinds[m.mesh.origin(h).index], to = m.kinds[m.mesh.target(h).index];
     const EdgeId e = HalfedgeMesh::edge(h);
     switch (collapseRule(from, to)) {
-        case CollapseRule::Never: return false;
-        case CollapseRule::Free: return true;
-        case CollapseRule::AlongFeature: return m.isFeature(e);
-        case CollapseRule::AlongBorder: return m.mesh.onBorder(e);
+        case CollapseRule::Never:
+            return false;
+        case CollapseRule::Free:
+            return true;
+        case CollapseRule::AlongFeature:
+            return m.isFeature(e);
+        case CollapseRule::AlongBorder:
+            return m.mesh.onBorder(e);
     }
     return false;
 }
@@ -222,14 +229,15 @@ bool Simplifier::run(Progress& progress) {
         const uint32_t e = c.halfedge >> 1;
         return e < mStamps.size() && mStamps[e] == c.stamp && m.mesh.alive(EdgeId(e));
     };
-    // A rejected edge may become valid through contractions near but not beside it: begin again until none does.
+    // A rejected edge may become valid through contractions near but not beside it: begin again until none
+    // does.
     bool again = false;
     do {
         const size_t before = m.mesh.faceCount();
         if (!queueAll(progress)) return false;
         for (size_t steps = 0; !mQueue.empty(); ++steps) {
-            if (steps % 256 == 0 &&
-                !progress.step(double(initial - m.mesh.faceCount()) / double(std::max(initial, wanted + 1) - wanted)))
+            if (steps % 256 == 0 && !progress.step(double(initial - m.mesh.faceCount()) /
+                                                   double(std::max(initial, wanted + 1) - wanted)))
                 return false;
             const Candidate top = mQueue.pop(alive);
             if (!alive(top)) continue;
@@ -271,17 +279,20 @@ std::optional<Simplifier::Refit> Simplifier::refit(HalfedgeId h) const {
     TESSERA_CHECK(other.chain == along.chain);
     if (m.mesh.target(result.before) == m.mesh.target(h)) return std::nullopt;
     const bool forward = chainVertex(along, false) == m.mesh.origin(h);
-    result.part = forward ? ChainPart{along.chain, other.from, along.to} : ChainPart{along.chain, along.from, other.to};
+    result.part =
+        forward ? ChainPart{along.chain, other.from, along.to} : ChainPart{along.chain, along.from, other.to};
 
     const std::vector<glm::dvec2> points = polyline(result.part);
     const BezierCurve curve = fitCurve(points);
     result.inner = {toLattice(curve.p[1]), toLattice(curve.p[2])};
-    const BezierCurve rounded{{points.front(), toPixels(result.inner[0]), toPixels(result.inner[1]), points.back()}};
+    const BezierCurve rounded{
+        {points.front(), toPixels(result.inner[0]), toPixels(result.inner[1]), points.back()}};
     if (maxDistance(rounded, points) > mSettings.curveTolerancePx) return std::nullopt;
     return result;
 }
 
-std::array<LatticePoint, 4> Simplifier::sideCurve(VertexId a, VertexId b, EdgeId e, const Refit* refit) const {
+std::array<LatticePoint, 4> Simplifier::sideCurve(VertexId a, VertexId b, EdgeId e,
+                                                  const Refit* refit) const {
     const LatticePoint pa = m.positions[a.index], pb = m.positions[b.index];
     std::array<LatticePoint, 2> inner;
     const ChainPart* part = nullptr;
@@ -311,7 +322,8 @@ bool Simplifier::faceValid(const std::array<VertexId, 3>& corners, const std::ar
     if (double(area2) * double(area2) < minHeight * minHeight * longest) return false;
 
     bool curved = false;
-    for (const EdgeId e : sides) curved = curved || m.isFeature(e) || (refit && e == HalfedgeMesh::edge(refit->before));
+    for (const EdgeId e : sides)
+        curved = curved || m.isFeature(e) || (refit && e == HalfedgeMesh::edge(refit->before));
     if (!curved) return true;
     LatticeTriangle t;
     for (size_t s = 0; s < 3; ++s) {
@@ -358,7 +370,8 @@ bool Simplifier::facesStayValid(HalfedgeId h, const std::optional<Refit>& refit,
         if (!m.mesh.face(beyond).valid() || m.isFeature(HalfedgeMesh::edge(beyond))) return false;
         const HalfedgeId n1 = m.mesh.next(beyond), n2 = m.mesh.next(n1);
         valid = faceValid({m.mesh.origin(beyond), m.mesh.origin(n1), m.mesh.origin(n2)},
-                          {HalfedgeMesh::edge(refit->before), HalfedgeMesh::edge(n1), HalfedgeMesh::edge(n2)}, with);
+                          {HalfedgeMesh::edge(refit->before), HalfedgeMesh::edge(n1), HalfedgeMesh::edge(n2)},
+                          with);
     }
     return valid;
 }
@@ -464,7 +477,8 @@ void Simplifier::describe(StageReport& report, std::string& shortfall) const {
         if (!m.mesh.alive(FaceId(f))) continue;
         bool touches = false;
         for (const VertexId v : m.mesh.corners(FaceId(f)))
-            touches = touches || m.kinds[v.index] == VertexKind::Feature || m.kinds[v.index] == VertexKind::FeatureEnd;
+            touches = touches || m.kinds[v.index] == VertexKind::Feature ||
+                      m.kinds[v.index] == VertexKind::FeatureEnd;
         held += touches;
     }
     shortfall = "features pin the mesh at " + std::to_string(m.mesh.faceCount()) + " patches, " +

@@ -1,5 +1,5 @@
-// Base domain computation (paper section 4.2): one synchronized sequence of half-edge collapses over all channel
-// meshes, by the quadric error summed over channels, that keeps features.
+// Base domain computation (paper section 4.2): one synchronized sequence of half-edge collapses over all
+// channel meshes, by the quadric error summed over channels, that keeps features.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -12,12 +12,13 @@
 
 namespace tessera {
 
-// The projection of the coarse meshes: straight triangles, but for the curves that features were fitted with. Every
-// patch is certified as it stands.
+// The projection of the coarse meshes: straight triangles, but for the curves that features were fitted with.
+// Every patch is certified as it stands.
 struct BaseDomain {
     PatchMesh mesh;
-    // By edge, along HalfedgeMesh::halfedge(edge), ends included, in pixels: for a feature its original polyline, for
-    // another edge the path through the vertices that it absorbed, pruned of branches and loops.
+    // By edge, along HalfedgeMesh::halfedge(edge), ends included, in pixels: for a feature its original
+    // polyline, for another edge the path through the vertices that it absorbed, pruned of branches and
+    // loops.
     std::vector<std::vector<glm::dvec2>> paths;
 };
 

@@ -54,7 +54,8 @@ bool flipAway(BaseDomain& base, HalfedgeId h) {
     const HalfedgeId third = base.mesh.connectivity().next(h);
     const EdgeId e = HalfedgeMesh::edge(third);
     if (base.mesh.curve(e).feature || !base.mesh.connectivity().canFlip(e)) return false;
-    // The connectivity belongs to the mesh as a value: flip in a copy (pages are shared) and keep it if it is sound.
+    // The connectivity belongs to the mesh as a value: flip in a copy (pages are shared) and keep it if it is
+    // sound.
     HalfedgeMesh flipped = base.mesh.connectivity();
     flipped.flip(e);
     PatchMesh trial = base.mesh;
@@ -63,7 +64,8 @@ bool flipAway(BaseDomain& base, HalfedgeId h) {
     const VertexId from = trial.connectivity().origin(now), to = trial.connectivity().target(now);
     const auto inner = straightControlPoints(trial.position(from), trial.position(to));
     trial.setInnerControlPoints(now, inner[0], inner[1]);
-    const std::array patches{trial.connectivity().face(now), trial.connectivity().face(HalfedgeMesh::twin(now))};
+    const std::array patches{trial.connectivity().face(now),
+                             trial.connectivity().face(HalfedgeMesh::twin(now))};
     if (!certifyPatches(trial, patches)) return false;
     base.mesh = std::move(trial);
     base.paths[e.index] = {toPixels(base.mesh.position(from)), toPixels(base.mesh.position(to))};
@@ -96,10 +98,12 @@ void smoothJoins(BaseDomain& base, const VectorizeSettings& settings, StageRepor
     std::vector<SmoothJoin> smooth;
     size_t corners = 0, flips = 0, left = 0;
     for (const Join& join : featureJoins(base.mesh)) {
-        const auto a = toPixels(base.mesh.controlPoints(join.a)), b = toPixels(base.mesh.controlPoints(join.b));
+        const auto a = toPixels(base.mesh.controlPoints(join.a)),
+                   b = toPixels(base.mesh.controlPoints(join.b));
         const glm::dvec2 handleA = a.p[1] - a.p[0], handleB = b.p[1] - b.p[0];
         const double lengths = glm::length(handleA) * glm::length(handleB);
-        if (lengths <= 0 || -glm::dot(handleA, handleB) < lengths * std::cos(glm::radians(settings.cornerDegrees))) {
+        if (lengths <= 0 ||
+            -glm::dot(handleA, handleB) < lengths * std::cos(glm::radians(settings.cornerDegrees))) {
             ++corners;
             continue;
         }

@@ -6,10 +6,10 @@
 namespace tessera {
 
 // Gives the two curves of a feature one tangent at each vertex inside it where they turn by less than
-// settings.cornerDegrees. Where a patch has both curves as sides, det J would vanish at the vertex: then the patch's
-// third side is flipped first, and where it cannot be, the join stays as it is. So it does where a curve would leave
-// its polyline by more than settings.curveTolerancePx or a patch would lose its certificate. Records the joins in the
-// mesh, and their number in the report.
+// settings.cornerDegrees. Where a patch has both curves as sides, det J would vanish at the vertex: then the
+// patch's third side is flipped first, and where it cannot be, the join stays as it is. So it does where a
+// curve would leave its polyline by more than settings.curveTolerancePx or a patch would lose its
+// certificate. Records the joins in the mesh, and their number in the report.
 void smoothJoins(BaseDomain& base, const VectorizeSettings& settings, StageReport& report);
 
 }  // namespace tessera

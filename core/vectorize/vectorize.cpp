@@ -43,7 +43,8 @@ const std::map<std::string, std::map<std::string, std::string>>& methods() {
 // The stages of one run: starts each with its variant, times it and files its report.
 class StageRunner {
   public:
-    StageRunner(const std::map<std::string, std::string>& variants, Progress& progress, VectorizeReport& report)
+    StageRunner(const std::map<std::string, std::string>& variants, Progress& progress,
+                VectorizeReport& report)
         : mVariants(variants), mProgress(progress), mReport(report) {}
 
     template <class Stage>
@@ -89,7 +90,7 @@ Result<VectorImage> runStages(const Image& image, const VectorizeSettings& setti
     if (!base) return tl::unexpected(base.error());
     if (observe.baseDomain) observe.baseDomain(*base);
 
-    auto curved = run("curves", [&](StageReport& r) { 
+    auto curved = run("curves", [&](StageReport& r) {
         return fitCurves(*base, settings, r, progress, observe.initialCurves);
     });
     if (!curved) return tl::unexpected(curved.error());

@@ -29,7 +29,8 @@ struct StageVariants {
 };
 const std::vector<StageVariants>& stageTable();
 
-// Looks at what each stage hands to the next (the pictures of Fig. 2 are made from it); any of them may be empty.
+// Looks at what each stage hands to the next (the pictures of Fig. 2 are made from it); any of them may be
+// empty.
 struct StageObserver {
     std::function<void(const std::vector<PixelChain>&)> features;
     std::function<void(const ChannelMeshes&)> initialMesh;
@@ -38,9 +39,9 @@ struct StageObserver {
     std::function<void(const PatchMesh&)> curves;
 };
 
-// Vectorizes a picture of at least 1 x 1 pixels. The same bytes for the same image and settings, whatever the number
-// of threads. Fails with Usage for settings out of range or variants that do not exist, and with Stopped within 50 ms
-// of a request to stop.
+// Vectorizes a picture of at least 1 x 1 pixels. The same bytes for the same image and settings, whatever the
+// number of threads. Fails with Usage for settings out of range or variants that do not exist, and with
+// Stopped within 50 ms of a request to stop.
 Result<VectorImage> vectorize(const Image& image, const VectorizeSettings& settings, Progress& progress,
                               const StageObserver& observe = {});
 

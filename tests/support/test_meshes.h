@@ -15,11 +15,13 @@ inline PatchMesh gridMesh(int width, int height, int columns, int rows, int chan
     std::vector<LatticePoint> positions;
     for (int j = 0; j <= rows; ++j)
         for (int i = 0; i <= columns; ++i)
-            positions.push_back({width * kLatticePerPixel * i / columns, height * kLatticePerPixel * j / rows});
+            positions.push_back(
+                {width * kLatticePerPixel * i / columns, height * kLatticePerPixel * j / rows});
     std::vector<std::array<uint32_t, 3>> triangles;
     for (int j = 0; j < rows; ++j)
         for (int i = 0; i < columns; ++i) {
-            const auto a = uint32_t(j * (columns + 1) + i), b = a + 1, c = a + uint32_t(columns) + 1, d = c + 1;
+            const auto a = uint32_t(j * (columns + 1) + i), b = a + 1, c = a + uint32_t(columns) + 1,
+                       d = c + 1;
             triangles.push_back({a, b, d});
             triangles.push_back({a, d, c});
         }
@@ -39,15 +41,16 @@ inline PatchSpline randomSpline(int channels, std::mt19937& random) {
         spline.terms[size_t(c)] = uint8_t(basis.n);
         for (int r = 0; r < basis.n + 3; ++r) {
             double sum = 0;
-            for (int i = 0; i < basis.n; ++i) sum += basis.toCoefficients[size_t(r * basis.n + i)] * nodal[size_t(i)];
+            for (int i = 0; i < basis.n; ++i)
+                sum += basis.toCoefficients[size_t(r * basis.n + i)] * nodal[size_t(i)];
             spline.coefficients.push_back(float(sum));
         }
     }
     return spline;
 }
 
-// gridMesh with its inner vertices moved, its inner edges bent (each as far as both patches stay certified), random
-// colours, and every third inner edge marked as a feature. The same for the same seed.
+// gridMesh with its inner vertices moved, its inner edges bent (each as far as both patches stay certified),
+// random colours, and every third inner edge marked as a feature. The same for the same seed.
 inline PatchMesh curvedMesh(int width, int height, int columns, int rows, unsigned seed, int channels = 3) {
     PatchMesh mesh = gridMesh(width, height, columns, rows, channels);
     const HalfedgeMesh& c = mesh.connectivity();
@@ -56,7 +59,8 @@ inline PatchMesh curvedMesh(int width, int height, int columns, int rows, unsign
     const double cellX = double(width) / columns, cellY = double(height) / rows;
     mesh.forEachVertex([&](VertexId v) {
         if (c.onBorder(v)) return;
-        mesh.setPosition(v, mesh.position(v) + toLattice({.18 * cellX * unit(random), .18 * cellY * unit(random)}));
+        mesh.setPosition(
+            v, mesh.position(v) + toLattice({.18 * cellX * unit(random), .18 * cellY * unit(random)}));
     });
     mesh.forEachEdge([&](EdgeId e) {
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
