@@ -166,7 +166,7 @@ class CurveOptimizer {
     bool optimize(Progress& progress, StageReport& report);
     // The curves as they are, on the lattice, certified or not.
     PatchMesh roundedMesh() const;
-    PatchMesh certifiedMesh(StageReport& report) const;
+    Result<PatchMesh> certifiedMesh(Progress& progress, StageReport& report) const;
 
   private:
     BezierCurve curveFrom(HalfedgeId h) const;
@@ -301,7 +301,7 @@ PatchMesh CurveOptimizer::roundedMesh() const {
     return mesh;
 }
 
-PatchMesh CurveOptimizer::certifiedMesh(StageReport& report) const {
+Result<PatchMesh> CurveOptimizer::certifiedMesh(Progress& progress, StageReport& report) const {
     PatchMesh mesh = mBase.mesh;
     // How much of each curve's way from the straight edge is kept.
     std::vector<double> kept(mConnectivity.edgeCapacity(), 1);
@@ -323,6 +323,7 @@ PatchMesh CurveOptimizer::certifiedMesh(StageReport& report) const {
     while (!open.empty()) {
         std::vector<PatchId> bad;
         for (const PatchId p : open) {
+            if (progress.stopRequested()) return stopped();
             LatticeTriangle t = mesh.controlPoints(p);
             t.p[kInterior] = toLattice(mInteriors[p.index]);
             if (const auto interior = certifiedInterior(t))
@@ -381,7 +382,7 @@ Result<PatchMesh> fitCurves(const BaseDomain& base, const VectorizeSettings& set
     CurveOptimizer optimizer(base, settings);
     if (observeInitial) observeInitial(optimizer.roundedMesh());
     if (!optimizer.optimize(progress, report)) return stopped();
-    return optimizer.certifiedMesh(report);
+    return optimizer.certifiedMesh(progress, report);
 }
 
 }  // namespace tessera

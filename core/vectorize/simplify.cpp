@@ -45,7 +45,8 @@ class Simplifier {
         : m(std::move(meshes)), mSettings(settings), mQuadrics(m.copyCount(), m.channels) {}
 
     bool run(Progress& progress);
-    BaseDomain baseDomain() const;
+    // Unfinished where `stop` is asked for.
+    BaseDomain baseDomain(const std::stop_token& stop) const;
     void describe(StageReport& report, std::string& shortfall) const;
 
   private:
@@ -432,12 +433,12 @@ void Simplifier::collapse(HalfedgeId h, const std::optional<Refit>& curve, std::
     m.mesh.forEachOutgoing(v, [&](HalfedgeId out) { refresh(HalfedgeMesh::edge(out)); });
 }
 
-BaseDomain Simplifier::baseDomain() const {
+BaseDomain Simplifier::baseDomain(const std::stop_token& stop) const {
     const auto compact = m.mesh.compacted();
     std::vector<LatticePoint> positions;
     for (const VertexId v : compact.oldVertex) positions.push_back(m.positions[v.index]);
     BaseDomain base{PatchMesh(m.width, m.height, m.channels, compact.mesh, positions), {}};
-    for (uint32_t e = 0; e < compact.oldEdge.size(); ++e) {
+    for (uint32_t e = 0; e < compact.oldEdge.size() && !stop.stop_requested(); ++e) {
         const EdgeId old = compact.oldEdge[e];
         if (!m.isFeature(old)) {
             std::vector<glm::dvec2> path;
@@ -457,6 +458,7 @@ BaseDomain Simplifier::baseDomain() const {
         base.paths.push_back(std::move(path));
     }
     base.mesh.forEachPatch([&](PatchId p) {
+        if (stop.stop_requested()) return;
         LatticeTriangle t = base.mesh.controlPoints(p);
         t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
         const auto interior = certifiedInterior(t);
@@ -491,9 +493,10 @@ Result<BaseDomain> simplify(ChannelMeshes meshes, const VectorizeSettings& setti
                             std::string& shortfall, Progress& progress) {
     Simplifier simplifier(std::move(meshes), settings);
     if (!simplifier.run(progress)) return stopped();
-    BaseDomain base = simplifier.baseDomain();
+    BaseDomain base = simplifier.baseDomain(progress.stopToken());
     simplifier.describe(report, shortfall);
-    smoothJoins(base, settings, report);
+    smoothJoins(base, settings, report, progress.stopToken());
+    if (progress.stopRequested()) return stopped();
     return base;
 }
 

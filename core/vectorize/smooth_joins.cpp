@@ -94,10 +94,12 @@ bool makeSmooth(BaseDomain& base, const Join& join, const VectorizeSettings& set
 
 }  // namespace
 
-void smoothJoins(BaseDomain& base, const VectorizeSettings& settings, StageReport& report) {
+void smoothJoins(BaseDomain& base, const VectorizeSettings& settings, StageReport& report,
+                 const std::stop_token& stop) {
     std::vector<SmoothJoin> smooth;
     size_t corners = 0, flips = 0, left = 0;
     for (const Join& join : featureJoins(base.mesh)) {
+        if (stop.stop_requested()) break;
         const auto a = toPixels(base.mesh.controlPoints(join.a)),
                    b = toPixels(base.mesh.controlPoints(join.b));
         const glm::dvec2 handleA = a.p[1] - a.p[0], handleB = b.p[1] - b.p[0];
