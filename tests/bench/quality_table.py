@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Measures vectorizations with the shipped program and prints a Markdown table, a row a run.
 
-  quality_table.py CLI PICTURE... [--patches N,N,...] [--raise] [--stage NAME=VARIANT]... [--set KEY=VALUE]... [--json FILE]
+  quality_table.py CLI PICTURE... [--patches N,N,...] [--high T] [--raise] [--stage NAME=VARIANT]... [--set KEY=VALUE]...
+                   [--json FILE]
 
 Each picture is vectorized, rendered to an 8-bit PNG with the defaults, and compared and validated by CLI
-(a tessera-cli). With --raise, a picture whose features pin the mesh above the wanted number of patches gets a second
-row: both Canny thresholds doubled, together, until the number is reached. Needs nothing but Python's own library.
+(a tessera-cli). Canny's upper threshold is T, the lower one in the paper's
+proportion. With --raise, a picture whose features pin the mesh above the wanted number of patches gets a second row:
+both thresholds doubled until the number is reached. Needs nothing but Python's own library.
 """
 import argparse
 import json
@@ -15,7 +17,8 @@ import sys
 import tempfile
 
 STAGES = ["features", "initial-mesh", "simplify", "curves", "colours"]
-LOW, HIGH = .05, .125  # the paper's thresholds
+HIGH = .125  # the paper's upper threshold
+LOW_SHARE = .05 / .125  # its lower one, in the same proportion
 COLUMNS = (["picture", "wanted", "patches", "Canny high", "MAE", "euclid", "MAE luma", "PSNR", "SSIM", "seam", "seam p95",
             "violations"] + [s + " s" for s in STAGES] + ["total s", "MB", "kB", "kB mesh"])
 
@@ -27,10 +30,10 @@ def call(*command):
     return json.loads(done.stdout)
 
 
-def measure(cli, picture, patches, low, high, extra):
+def measure(cli, picture, patches, high, extra):
     with tempfile.TemporaryDirectory() as folder:
         document, png = os.path.join(folder, "a.tessera"), os.path.join(folder, "a.png")
-        made = call(cli, "vectorize", picture, "-o", document, "--patches", patches, "--set", f"cannyLow={low}",
+        made = call(cli, "vectorize", picture, "-o", document, "--patches", patches, "--set", f"cannyLow={high * LOW_SHARE}",
                     "--set", f"cannyHigh={high}", "--quiet", "--json", *extra)
         subprocess.run([cli, "render", document, "-o", png], check=True, stderr=subprocess.DEVNULL)
         errors = call(cli, "compare", picture, png, "--json")
@@ -55,6 +58,7 @@ def main():
     parser.add_argument("cli")
     parser.add_argument("pictures", nargs="+")
     parser.add_argument("--patches", default="1000,2000,4000")
+    parser.add_argument("--high", type=float, default=HIGH)
     parser.add_argument("--raise", dest="lift", action="store_true")
     parser.add_argument("--stage", action="append", default=[])
     parser.add_argument("--set", action="append", default=[])
@@ -71,22 +75,22 @@ def main():
         print("| " + " | ".join(shown(row[c]) for c in COLUMNS) + " |", flush=True)
 
     for picture in arguments.pictures:
-        low, high = LOW, HIGH  # fewer patches never need lower thresholds than more
+        high = arguments.high  # fewer patches never need lower thresholds than more
         pinned = None
         for wanted in counts:
             # A mesh that is pinned above one count is the same for every smaller one.
-            row = dict(pinned, wanted=wanted) if pinned else measure(arguments.cli, picture, wanted, LOW, HIGH, extra)
+            row = dict(pinned, wanted=wanted) if pinned else measure(arguments.cli, picture, wanted, arguments.high, extra)
             emit(row)
             if row["patches"] <= wanted:
                 continue
             pinned = row
             if not arguments.lift:
                 continue
-            if low > LOW:
-                row = measure(arguments.cli, picture, wanted, low, high, extra)
-            while row["patches"] > wanted and low < 1:
-                low, high = min(1, 2 * low), min(1, 2 * high)
-                row = measure(arguments.cli, picture, wanted, low, high, extra)
+            if high > arguments.high:
+                row = measure(arguments.cli, picture, wanted, high, extra)
+            while row["patches"] > wanted and high < 1:
+                high = min(1, 2 * high)
+                row = measure(arguments.cli, picture, wanted, high, extra)
             emit(row)
     if arguments.json:
         with open(arguments.json, "w", encoding="utf-8") as out:
