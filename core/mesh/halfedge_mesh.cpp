@@ -10,7 +10,7 @@ namespace tessera {
 HalfedgeMesh HalfedgeMesh::fromTriangles(size_t vertexCount,
                                          std::span<const std::array<uint32_t, 3>> triangles,
                                          const std::stop_token& stop) {
-    constexpr size_t kStopInterval = 4096;
+    const auto stopAt = [&stop](size_t i) { return i % 4096 == 0 && stop.stop_requested(); };
     HalfedgeMesh mesh;
     mesh.mVertexHalfedge.resize(vertexCount);
     mesh.mFaceHalfedge.resize(triangles.size());
@@ -29,16 +29,18 @@ HalfedgeMesh HalfedgeMesh::fromTriangles(size_t vertexCount,
     for (size_t v = 0; v < vertexCount; ++v) first[v + 1] += first[v];
     std::vector<Side> sides(3 * triangles.size());
     std::vector<uint32_t> fill(first.begin(), first.end() - 1);
-    for (uint32_t f = 0; f < triangles.size(); ++f)
+    for (uint32_t f = 0; f < triangles.size(); ++f) {
+        if (stopAt(f)) return {};
         for (uint32_t c = 0; c < 3; ++c) {
             const uint32_t a = triangles[f][c], b = triangles[f][(c + 1) % 3];
             TESSERA_CHECK(a != b && a < vertexCount && b < vertexCount);
             sides[fill[std::min(a, b)]++] = {std::max(a, b), 3 * f + c};
         }
+    }
 
     std::vector<HalfedgeId> halfedgeOfSide(3 * triangles.size());
     for (size_t v = 0; v < vertexCount; ++v) {
-        if (v % kStopInterval == 0 && stop.stop_requested()) return {};
+        if (stopAt(v)) return {};
         const auto begin = sides.begin() + first[v], end = sides.begin() + first[v + 1];
         std::sort(begin, end, [](const Side& a, const Side& b) {
             return a.larger != b.larger ? a.larger < b.larger : a.side < b.side;
@@ -65,7 +67,7 @@ HalfedgeMesh HalfedgeMesh::fromTriangles(size_t vertexCount,
     mesh.mEdgeCount = mesh.mHalfedges.size() / 2;
 
     for (uint32_t f = 0; f < triangles.size(); ++f) {
-        if (f % kStopInterval == 0 && stop.stop_requested()) return {};
+        if (stopAt(f)) return {};
         mesh.mFaceHalfedge.edit(f) = halfedgeOfSide[3 * f];
         for (uint32_t c = 0; c < 3; ++c) {
             const HalfedgeId h = halfedgeOfSide[3 * f + c];
@@ -74,12 +76,14 @@ HalfedgeMesh HalfedgeMesh::fromTriangles(size_t vertexCount,
         }
     }
     // A halfedge outside runs on to the one that leaves its target; a border vertex has exactly one of those.
-    for (uint32_t h = 0; h < mesh.mHalfedges.size(); ++h)
+    for (uint32_t h = 0; h < mesh.mHalfedges.size(); ++h) {
+        if (stopAt(h)) return {};
         if (!mesh.face(HalfedgeId(h)).valid()) {
             const HalfedgeId known = mesh.mVertexHalfedge[mesh.origin(HalfedgeId(h)).index];
             TESSERA_CHECK(!known.valid() || mesh.face(known).valid());
             mesh.mVertexHalfedge.edit(mesh.origin(HalfedgeId(h)).index) = HalfedgeId(h);
         }
+    }
     for (uint32_t h = 0; h < mesh.mHalfedges.size(); ++h)
         if (!mesh.face(HalfedgeId(h)).valid())
             mesh.setNext(HalfedgeId(h), mesh.mVertexHalfedge[mesh.target(HalfedgeId(h)).index]);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <stop_token>
 #include <vector>
 
 namespace tessera {
@@ -38,11 +39,11 @@ class CandidateQueue {
     }
 
     // Takes the first candidate out. `alive(candidate)` tells which still count: the others may be dropped at
-    // any time. The queue must not be empty.
+    // any time. The queue must not be empty. Void where all were, or where `stop` is asked for.
     template <class Alive>
-    Candidate pop(Alive&& alive) {
-        if (mHeap.empty()) refill(alive);
-        if (mHeap.empty()) return {0, std::numeric_limits<uint32_t>::max(), 0};  // all were void
+    Candidate pop(Alive&& alive, const std::stop_token& stop = {}) {
+        while (mHeap.empty() && !mWaiting.empty() && !stop.stop_requested()) refill(alive, stop);
+        if (mHeap.empty()) return {0, std::numeric_limits<uint32_t>::max(), 0};
         std::pop_heap(mHeap.begin(), mHeap.end(), after);
         const Candidate top = mHeap.back();
         mHeap.pop_back();
@@ -52,19 +53,30 @@ class CandidateQueue {
   private:
     static bool after(const Candidate& a, const Candidate& b) { return b.before(a); }
 
+    // Moves about a sixteenth of those that wait into the heap. Which ones decides how fast the queue is, but
+    // not in which order candidates come out, so that a sample is enough to choose the threshold.
     template <class Alive>
-    void refill(Alive&& alive) {
-        std::erase_if(mWaiting, [&](const Candidate& c) { return !alive(c); });
-        if (mWaiting.empty()) return;
-        constexpr size_t kLeast = 4096, kShare = 16;
-        const size_t count = std::min(mWaiting.size(), std::max(kLeast, mWaiting.size() / kShare));
-        std::nth_element(mWaiting.begin(), mWaiting.begin() + int64_t(count - 1), mWaiting.end(),
-                         [](const Candidate& a, const Candidate& b) { return a.before(b); });
-        mThreshold = mWaiting[count - 1].cost;
-        const auto rest = std::partition(mWaiting.begin(), mWaiting.end(),
-                                         [this](const Candidate& c) { return c.cost > mThreshold; });
-        mHeap.assign(rest, mWaiting.end());
-        mWaiting.erase(rest, mWaiting.end());
+    void refill(Alive&& alive, const std::stop_token& stop) {
+        constexpr size_t kLeast = 4096, kShare = 16, kSample = 4096, kStopInterval = 4096;
+        const size_t count = mWaiting.size();
+        std::vector<float> sample;
+        for (size_t i = 0; i < count; i += std::max<size_t>(1, count / kSample))
+            sample.push_back(mWaiting[i].cost);
+        const size_t wanted = std::min(count, std::max(kLeast, count / kShare));
+        const auto quantile = sample.begin() + int64_t((sample.size() - 1) * wanted / count);
+        std::nth_element(sample.begin(), quantile, sample.end());
+        mThreshold = *quantile;
+
+        size_t kept = 0, i = 0;
+        for (; i < count && (i % kStopInterval != 0 || !stop.stop_requested()); ++i) {
+            const Candidate c = mWaiting[i];
+            if (!alive(c)) continue;
+            if (c.cost > mThreshold)
+                mWaiting[kept++] = c;
+            else
+                mHeap.push_back(c);
+        }
+        mWaiting.erase(mWaiting.begin() + int64_t(kept), mWaiting.begin() + int64_t(i));
         std::make_heap(mHeap.begin(), mHeap.end(), after);
     }
 

@@ -217,6 +217,7 @@ bool Simplifier::run(Progress& progress) {
     mQueued.assign(edges, Queued::No);
     mLists.resize(edges);
     for (uint32_t e = 0; e < edges; ++e) {
+        if (e % 4096 == 0 && progress.stopRequested()) return false;
         const HalfedgeId h = HalfedgeMesh::halfedge(EdgeId(e));
         mLists[e] = mAbsorbed.pair(m.mesh.origin(h), m.mesh.target(h));
     }
@@ -240,7 +241,7 @@ bool Simplifier::run(Progress& progress) {
             if (steps % 256 == 0 && !progress.step(double(initial - m.mesh.faceCount()) /
                                                    double(std::max(initial, wanted + 1) - wanted)))
                 return false;
-            const Candidate top = mQueue.pop(alive);
+            const Candidate top = mQueue.pop(alive, progress.stopToken());
             if (!alive(top)) continue;
             if (m.mesh.faceCount() <= wanted && double(top.cost) > kFreeError) break;
             const HalfedgeId h(top.halfedge);

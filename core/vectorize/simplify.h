@@ -26,8 +26,8 @@ struct BaseDomain {
 enum class CollapseRule : uint8_t { Never, Free, AlongFeature, AlongBorder };
 CollapseRule collapseRule(VertexKind from, VertexKind to);
 
-// Collapses until at most settings.patches faces are left. Where features pin the mesh above that, says so in
-// `shortfall`, with the number of patches that touch features.
+// Collapses until at most settings.patches faces are left, and on while that costs nothing. Where features
+// pin the mesh above that, says so in `shortfall`, with the number of patches that touch features.
 Result<BaseDomain> simplify(ChannelMeshes meshes, const VectorizeSettings& settings, StageReport& report,
                             std::string& shortfall, Progress& progress);
 

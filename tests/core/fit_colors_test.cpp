@@ -186,10 +186,10 @@ TEST(FitColors, FeaturesHaveNoPairs) {
     }
 }
 
-// Fig. 11: the polyline is a pixel away from its curve; sampled along the curve, colours of the other side
+// Fig. 11: the polyline is two pixels away from its curve; sampled along the curve, colours of the other side
 // come in.
 TEST(FitColors, TheWarpKeepsToTheRightSide) {
-    const double bend = 1;
+    const double bend = 2;
     PatchMesh mesh = gridMesh(80, 60, 2, 1);
     const HalfedgeId seam = mesh.connectivity().find(VertexId(1), VertexId(4));
     const EdgeId e = HalfedgeMesh::edge(seam);

@@ -4,13 +4,17 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <random>
+#include <set>
+#include <string>
 #include <thread>
 
 #include "core/export/rasterize.h"
@@ -23,7 +27,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using Clock = std::chrono::steady_clock;
 
 template <class Value>
 Image paint(int width, int height, int channels, Value&& value) {
@@ -98,8 +101,8 @@ TEST(Vectorize, ASmallSceneIsValidAndClose) {
         EXPECT_LE(result.mesh.patchCount(), 300U);
         EXPECT_GE(result.mesh.patchCount(), 299U);
         EXPECT_THAT(result.report.shortfall, IsEmpty());
-        // 29.5 and 29.9 dB when this was written.
-        EXPECT_GT(psnrOf(result.mesh, image), 28);
+        // 36.9 and 33.7 dB (over white) when this was written, drawn and compared as the photographs below.
+        EXPECT_GT(psnrOf(result.mesh, image), channels == 3 ? 36.4 : 33.2);
     }
 }
 
@@ -205,38 +208,51 @@ TEST(Vectorize, ValuesOutsideZeroToOne) {
     EXPECT_THAT(validate(run(image, wanting(30)).mesh).violations, IsEmpty());
 }
 
-// A request to stop is honoured within 50 ms in whatever stage it comes. The clock on the wall also runs
-// while other processes have the machine: the limit is on the median of a few trials per time, and each trial
-// may take six times as long.
+double cpuMilliseconds(clockid_t clock) {
+    timespec now{};
+    clock_gettime(clock, &now);
+    return double(now.tv_sec) * 1e3 + double(now.tv_nsec) * 1e-6;
+}
+
+// A request to stop is honoured within 50 ms in whatever stage it comes. Measured on one thread and by the
+// processor time of that thread, so that what else the machine does plays no part; asked for at shares of the
+// time that the whole takes, most of them where the stages before the long simplification are.
 TEST(Vectorize, StopsInTime) {
-    const Image image = scene(900, 700);
-    const auto timed = [&](std::chrono::milliseconds after) {
+    const Image image = scene(560, 400);
+    VectorizeSettings settings = wanting(1500);
+    settings.threads = 1;
+    clockid_t clock{};
+    ASSERT_EQ(pthread_getcpuclockid(pthread_self(), &clock), 0);
+    const double begin = cpuMilliseconds(clock);
+    run(image, settings);
+    const double whole = cpuMilliseconds(clock) - begin;
+    constexpr double kLimit = 50;
+    std::set<std::string> stages;
+    for (const double share : {0., .005, .01, .015, .02, .03, .04, .05, .07, .1, .4, .9}) {
         std::stop_source stop;
-        Progress progress(stop.get_token());
-        Clock::time_point asked;
+        std::string stage;
+        Progress progress(stop.get_token(), [&](std::string_view name, double, double) { stage = name; });
+        const double start = cpuMilliseconds(clock);
+        std::atomic<double> asked{0};
         std::jthread timer([&] {
-            std::this_thread::sleep_for(after);
-            asked = Clock::now();
+            while (cpuMilliseconds(clock) < start + share * whole)
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            asked = cpuMilliseconds(clock);
             stop.request_stop();
         });
-        const auto result = vectorize(image, wanting(3000), progress);
-        const auto end = Clock::now();
+        const auto result = vectorize(image, settings, progress);
+        const double end = cpuMilliseconds(clock);
+        // The timer's clock stands still while this thread waits for it: let it run where the job was faster
+        // this time.
+        while (asked == 0 && cpuMilliseconds(clock) < start + share * whole + 100) {
+        }
         timer.join();
-        EXPECT_FALSE(result.has_value()) << "too fast for this test";
-        if (!result) {
-            EXPECT_EQ(result.error().code, ErrorCode::Stopped);
-        }
-        return std::chrono::duration<double, std::milli>(end - asked).count();
-    };
-    for (const int after : {0, 20, 60, 120, 200, 300, 450, 600, 900, 1300, 1800, 2500}) {
-        std::array<double, 3> took{};
-        for (double& t : took) {
-            t = timed(std::chrono::milliseconds(after));
-            EXPECT_LT(t, 300) << after;
-        }
-        std::sort(took.begin(), took.end());
-        EXPECT_LT(took[1], 50) << "stop asked for after " << after << " ms";
+        if (result) continue;
+        EXPECT_EQ(result.error().code, ErrorCode::Stopped);
+        EXPECT_LT(end - asked, kLimit) << "asked after " << share * whole << " ms, in stage " << stage;
+        stages.insert(stage);
     }
+    EXPECT_GE(stages.size(), 3U) << ::testing::PrintToString(stages);
 }
 
 // Parts of photographs at 2000 patches. The floors are .3 dB below what the paper's method reached when this
@@ -274,9 +290,9 @@ TEST_P(Photographs, AreValidAndClose) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kodak, Photographs,
-                         ::testing::Values(Photograph{"kodim23.png", 200, 60, 384, 320, 99},
-                                           Photograph{"kodim13.png", 300, 200, 160, 160, 99}),
-                         [](const auto& info) { return std::string(info.param.file, 7); });
+                         ::testing::Values(Photograph{"kodim23.png", 200, 60, 384, 320, 33.5},
+                                           Photograph{"kodim13.png", 300, 200, 160, 160, 26}),
+                         [](const auto& photo) { return std::string(photo.param.file, 7); });
 
 }  // namespace
 }  // namespace tessera
