@@ -22,6 +22,11 @@ struct Target {
     std::vector<PixelOwner>& owners;
 };
 
+// Vertices of a vectorized picture often lie on pixel centres, which several patches then share. As with the fast
+// path's edge rule, a centre on a side belongs to the patch right of it, on a level side or a vertex to that
+// just below.
+constexpr glm::dvec2 kTieBreak(1e-10, 1e-7);
+
 // The second stage: pixel centres in the triangle of the piece's corners, bounds included. Where two pieces
 // meet in a pixel centre the first one keeps it.
 void fillTriangle(const Piece& piece, PatchId patch, Target& target) {
@@ -35,7 +40,7 @@ void fillTriangle(const Piece& piece, PatchId patch, Target& target) {
               y1 = std::min(target.view.height - 1, int(std::floor(hi.y - .5)));
     for (int y = y0; y <= y1; ++y)
         for (int x = x0; x <= x1; ++x) {
-            const glm::dvec2 p(x + .5, y + .5);
+            const glm::dvec2 p = glm::dvec2(x + .5, y + .5) + kTieBreak;
             const Barycentric in(cross(b - p, c - p) / area, cross(c - p, a - p) / area,
                                  cross(a - p, b - p) / area);
             if (in.x < 0 || in.y < 0 || in.z < 0) continue;
@@ -47,8 +52,12 @@ void fillTriangle(const Piece& piece, PatchId patch, Target& target) {
         }
 }
 
-// The first stage: down to pieces whose bounding box is smaller than a pixel. (The box of the control points,
-// which holds the piece.)
+// Section 5 asks for pieces smaller than a pixel. Their chords leave cracks where neighbours are cut to different
+// depths, a few pixel centres in ten thousand on a photograph; at a quarter of a pixel, a sixteenth of that.
+constexpr double kPieceSize = .25;
+
+// The first stage: down to pieces whose bounding box (that of the control points, which holds the piece) is
+// smaller than kPieceSize output pixels.
 void subdivide(const Piece& piece, PatchId patch, Target& target) {
     glm::dvec2 lo = piece.shape.p[0], hi = lo;
     for (const glm::dvec2& p : piece.shape.p) {
@@ -56,7 +65,7 @@ void subdivide(const Piece& piece, PatchId patch, Target& target) {
         hi = glm::max(hi, p);
     }
     if (hi.x < 0 || hi.y < 0 || lo.x > target.view.width || lo.y > target.view.height) return;
-    if (hi.x - lo.x < 1 && hi.y - lo.y < 1) return fillTriangle(piece, patch, target);
+    if (hi.x - lo.x < kPieceSize && hi.y - lo.y < kPieceSize) return fillTriangle(piece, patch, target);
     const auto children = subdivide4(piece.shape);
     const auto& [a, b, c] = piece.corners;
     const Barycentric i = .5 * (a + b), j = .5 * (b + c), k = .5 * (c + a);
