@@ -7,7 +7,7 @@ namespace tessera {
 
 namespace {
 
-// (2 a + b) / 3, rounded half away from the origin's side, so that each end gives the same two points.
+// (2 a + b) / 3, rounded to the lattice.
 int32_t third(int32_t a, int32_t b) {
     return int32_t(std::lround((2.0 * a + b) / 3.0));
 }
