@@ -1,6 +1,7 @@
 // A file that is written atomically is there whole, or the old one still is, and nothing else is left in the
 // folder.
 #include "core/base/atomic_file.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -17,25 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class AtomicFile : public testing::Test {
+class AtomicFile : public tessera::testing::TemporaryFolderTest {
   protected:
-    void SetUp() override {
-        mFolder = fs::path(testing::TempDir()) / ("tessera-atomic-" + std::to_string(::getpid()));
-        fs::create_directories(mFolder);
-    }
-    void TearDown() override { fs::remove_all(mFolder); }
-
-    std::string at(const std::string& name) const { return (mFolder / name).string(); }
-    std::string contentOf(const std::string& name) const {
-        std::ifstream file(at(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
     size_t entryCount() const {
         return size_t(std::distance(fs::directory_iterator(mFolder), fs::directory_iterator()));
     }
     static std::vector<uint8_t> bytesOf(std::string_view text) { return {text.begin(), text.end()}; }
-
-    fs::path mFolder;
 };
 
 TEST_F(AtomicFile, WritesNewAndReplacesOld) {

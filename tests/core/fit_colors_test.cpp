@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/mesh/mesh_validate.h"
+#include "tests/support/painted_image.h"
 #include "tests/support/test_meshes.h"
 
 namespace tessera {
@@ -17,17 +18,9 @@ namespace {
 using testing::curvedMesh;
 using testing::gridMesh;
 using ::testing::IsEmpty;
+using testing::paint;
 
 using Paths = std::vector<std::vector<glm::dvec2>>;
-
-template <class Value>
-Image paint(int width, int height, int channels, Value&& value) {
-    Image image(width, height, channels);
-    for (int c = 0; c < channels; ++c)
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) image.at(x, y, c) = float(value(x + .5, y + .5, c));
-    return image;
-}
 
 PatchMesh fit(const PatchMesh& mesh, const Image& image, const Paths& paths = {},
               const std::string& variant = "sampled") {

@@ -10,25 +10,15 @@
 #include <limits>
 
 #include "core/image/image_io.h"
+#include "tests/support/temporary_folder.h"
 
 namespace tessera {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ImageWrite : public testing::Test {
+class ImageWrite : public tessera::testing::TemporaryFolderTest {
   protected:
-    void SetUp() override {
-        mFolder = fs::path(testing::TempDir()) / ("tessera-write-" + std::to_string(::getpid()));
-        fs::create_directories(mFolder);
-    }
-    void TearDown() override { fs::remove_all(mFolder); }
-
-    std::string at(const std::string& name) const { return (mFolder / name).string(); }
-    std::string contentOf(const std::string& name) const {
-        std::ifstream file(at(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
     Image writtenAndRead(const Image& image, const std::string& name,
                          const WriteOptions& options = {}) const {
         const Result<void> written = writeImage(image, at(name), options);
@@ -37,8 +27,6 @@ class ImageWrite : public testing::Test {
         EXPECT_TRUE(loaded) << loaded.error().message;
         return loaded ? loaded->image : Image();
     }
-
-    fs::path mFolder;
 };
 
 // Values that `levels` steps can hold, all different from plane to plane.

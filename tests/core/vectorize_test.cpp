@@ -21,21 +21,14 @@
 #include "core/image/image_compare.h"
 #include "core/image/image_io.h"
 #include "core/mesh/mesh_validate.h"
+#include "tests/support/painted_image.h"
 
 namespace tessera {
 namespace {
 
+using tessera::testing::paint;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-template <class Value>
-Image paint(int width, int height, int channels, Value&& value) {
-    Image image(width, height, channels);
-    for (int c = 0; c < channels; ++c)
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) image.at(x, y, c) = float(value(x + .5, y + .5, c));
-    return image;
-}
 
 // Waves with a disc, a bar and some noise in them: features, weak edges and texture.
 Image scene(int width, int height, int channels = 3) {
