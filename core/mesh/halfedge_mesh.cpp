@@ -250,6 +250,76 @@ void HalfedgeMesh::flip(EdgeId e) {
     if (halfedge(b) == t) mVertexHalfedge.edit(b.index) = h1;
 }
 
+VertexId HalfedgeMesh::addVertex() {
+    mVertexHalfedge.pushBack(HalfedgeId());
+    ++mVertexCount;
+    return VertexId(uint32_t(mVertexHalfedge.size() - 1));
+}
+
+HalfedgeId HalfedgeMesh::addEdge(VertexId from, VertexId to) {
+    const HalfedgeId h(uint32_t(mHalfedges.size()));
+    mHalfedges.pushBack({HalfedgeId(), from, FaceId()});
+    mHalfedges.pushBack({HalfedgeId(), to, FaceId()});
+    ++mEdgeCount;
+    return h;
+}
+
+void HalfedgeMesh::setFace(FaceId f, HalfedgeId a, HalfedgeId b, HalfedgeId c) {
+    setNext(a, b);
+    setNext(b, c);
+    setNext(c, a);
+    for (const HalfedgeId h : {a, b, c}) mHalfedges.edit(h.index).face = f;
+    mFaceHalfedge.edit(f.index) = a;
+}
+
+FaceId HalfedgeMesh::addFace(HalfedgeId a, HalfedgeId b, HalfedgeId c) {
+    mFaceHalfedge.pushBack(HalfedgeId());
+    ++mFaceCount;
+    const FaceId f(uint32_t(mFaceHalfedge.size() - 1));
+    setFace(f, a, b, c);
+    return f;
+}
+
+VertexId HalfedgeMesh::split(EdgeId e) {
+    const HalfedgeId h = halfedge(e), t = twin(h);
+    const VertexId b = origin(t), m = addVertex();
+    const HalfedgeId beforeT = prev(t), h1 = next(h), t1 = next(t);
+    const FaceId f = face(h), g = face(t);
+    const HalfedgeId onward = addEdge(m, b), back = twin(onward);
+    mHalfedges.edit(t.index).origin = m;
+    if (halfedge(b) == t) mVertexHalfedge.edit(b.index) = back;
+    mVertexHalfedge.edit(m.index) = g.valid() ? onward : t;
+
+    if (f.valid()) {
+        const HalfedgeId h2 = next(h1), toOpposite = addEdge(m, origin(h2));
+        setFace(f, h, toOpposite, h2);
+        addFace(onward, h1, twin(toOpposite));
+    } else {
+        setNext(h, onward);
+        setNext(onward, h1);
+    }
+    if (g.valid()) {
+        const HalfedgeId t2 = next(t1), toOpposite = addEdge(m, origin(t2));
+        setFace(g, t, t1, twin(toOpposite));
+        addFace(back, toOpposite, t2);
+    } else {
+        setNext(beforeT, back);
+        setNext(back, t);
+    }
+    return m;
+}
+
+VertexId HalfedgeMesh::split(FaceId f) {
+    const auto [ab, bc, ca] = sides(f);
+    const VertexId m = addVertex();
+    const HalfedgeId toA = addEdge(m, origin(ab)), toB = addEdge(m, origin(bc)), toC = addEdge(m, origin(ca));
+    mVertexHalfedge.edit(m.index) = toA;
+    setFace(f, ab, twin(toB), toA);
+    addFace(bc, twin(toC), toB);
+    addFace(ca, twin(toA), toC);
+    return m;
+}
+
 HalfedgeMesh::Compacted HalfedgeMesh::compacted() const {
     Compacted result;
     std::vector<uint32_t> newVertex(vertexCapacity(), 0), newEdge(edgeCapacity(), 0),

@@ -96,6 +96,12 @@ class HalfedgeMesh {
     // Turns it; halfedge(e) then runs from the corner opposite its own face before to the other one.
     void flip(EdgeId e);
 
+    // Puts a new vertex on an edge and joins it to the corners opposite. halfedge(e) then ends at the vertex,
+    // from which the first of the new edges runs on to the old end.
+    VertexId split(EdgeId e);
+    // Puts a new vertex into a face and joins it to the corners; the face keeps its first side.
+    VertexId split(FaceId f);
+
     // A new mesh of the live elements alone, in order; old ids by new id.
     struct Compacted;
     Compacted compacted() const;
@@ -108,6 +114,11 @@ class HalfedgeMesh {
     };
 
     void setNext(HalfedgeId h, HalfedgeId to) { mHalfedges.edit(h.index).next = to; }
+    VertexId addVertex();
+    HalfedgeId addEdge(VertexId from, VertexId to);  // the halfedge that leaves `from`
+    // Makes `f` the triangle of three halfedges in this order.
+    void setFace(FaceId f, HalfedgeId a, HalfedgeId b, HalfedgeId c);
+    FaceId addFace(HalfedgeId a, HalfedgeId b, HalfedgeId c);
     void remove(EdgeId e);
     void remove(FaceId f);
     void chooseVertexHalfedge(VertexId v, HalfedgeId any);
