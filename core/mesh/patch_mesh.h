@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/mesh/bezier.h"
+#include "core/mesh/colour_basis.h"
 #include "core/mesh/halfedge_mesh.h"
 #include "core/mesh/lattice.h"
 #include "core/mesh/tps.h"
@@ -52,6 +53,8 @@ class PatchMesh {
     int height() const { return mHeight; }
     int channels() const { return mChannels; }
     const HalfedgeMesh& connectivity() const { return mConnectivity; }
+    // That of the splines of all patches.
+    ColourBasis colourBasis() const { return mColourBasis; }
     size_t patchCount() const { return mConnectivity.faceCount(); }
 
     LatticePoint position(VertexId v) const { return mPositions[v.index]; }
@@ -63,6 +66,8 @@ class PatchMesh {
     // Another connectivity over the same elements (after a flip, say). The caller keeps the geometry
     // consistent.
     void setConnectivity(HalfedgeMesh connectivity) { mConnectivity = std::move(connectivity); }
+    // The values of the splines stay as they are and mean something else.
+    void setColourBasis(ColourBasis basis) { mColourBasis = basis; }
     void setPosition(VertexId v, LatticePoint p) { mPositions.edit(v.index) = p; }
     void setCurve(EdgeId e, const EdgeCurve& curve) { mCurves.edit(e.index) = curve; }
     void setInterior(PatchId p, LatticePoint point) { mInteriors.edit(p.index) = point; }
@@ -97,6 +102,7 @@ class PatchMesh {
     int mWidth = 0;
     int mHeight = 0;
     int mChannels = 3;
+    ColourBasis mColourBasis = ColourBasis::Rgb;
     HalfedgeMesh mConnectivity;
     PagedArray<LatticePoint> mPositions;
     PagedArray<EdgeCurve> mCurves;

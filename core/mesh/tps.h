@@ -35,12 +35,24 @@ double tpsKernel(double squaredDistance);
 constexpr int kDefaultCentreCount = 16;
 const std::array<glm::dvec2, kDefaultCentreCount>& defaultCentres();
 
+// Centres of which every prefix is spread well, so that a channel may have any number of terms: the corners,
+// the middles of ab, bc, ca, the centroid, and so on as COLOUR.md lists them.
+constexpr int kNestedCentreCount = 48;
+const std::array<glm::dvec2, kNestedCentreCount>& nestedCentres();
+
+// Which centres a spline has that lists none of its own.
+enum class CentreLayout : uint8_t { Paper, Nested };
+
+// Those centres: defaultCentres() or nestedCentres().
+std::span<const glm::dvec2> centresOf(CentreLayout layout);
+
 // Colour of one patch: for each channel f(x) = b0 + b1 x.x + b2 x.y + sum over i of alpha_i phi(|x -
-// centre_i|), x in the parametric domain, values in the working space of Image. Channels share one list of
+// centre_i|), x in the parametric domain, values in the mesh's ColourBasis. Channels share one list of
 // centres; a channel with n terms uses its first n. The alphas fulfil sum alpha = 0 and sum alpha centre = 0.
 struct PatchSpline {
     std::array<uint8_t, kMaxChannels> terms{};  // alphas per channel: 0, or 3 and more
-    // The centres where they are not the default ones; else empty.
+    CentreLayout layout = CentreLayout::Paper;
+    // The centres where they are not those of the layout; else empty.
     std::vector<glm::vec2> centres;
     // Channel after channel: b0, b1, b2, alpha_0 .. alpha_(n-1).
     std::vector<float> coefficients;
@@ -50,7 +62,7 @@ struct PatchSpline {
     // Where channel c's coefficients begin.
     size_t offset(int c) const;
     glm::dvec2 centre(int i) const {
-        return centres.empty() ? defaultCentres()[size_t(i)] : glm::dvec2(centres[size_t(i)]);
+        return centres.empty() ? centresOf(layout)[size_t(i)] : glm::dvec2(centres[size_t(i)]);
     }
     int maxTerms(int channels) const;
 };
@@ -83,5 +95,7 @@ struct NodalBasis {
 NodalBasis nodalBasis(std::span<const glm::dvec2> centres);
 // nodalBasis of the default centres, computed once.
 const NodalBasis& defaultNodalBasis();
+// nodalBasis of the first n nested centres, 3 <= n <= kNestedCentreCount; each computed once. Thread-safe.
+const NodalBasis& nestedNodalBasis(int n);
 
 }  // namespace tessera

@@ -22,23 +22,28 @@ constexpr float kHalfLog2 = .34657359f;
 constexpr float kLogPolynomial[8] = {3.19697829e-07f, 1.44265211f, -.720386612f, .472499525f,
                                      -.323115935f,    .190420831f, -.076848726f, .0147787208f};
 
+// The centres of a layout in single precision.
+struct LayoutCentres {
+    explicit LayoutCentres(CentreLayout layout) {
+        for (const glm::dvec2 c : centresOf(layout)) {
+            x.push_back(float(c.x));
+            y.push_back(float(c.y));
+        }
+    }
+    std::vector<float> x, y;
+};
+
 // A spline with its centres side by side and the same number of terms for each channel, the missing alphas 0.
 struct Packed {
     static constexpr int kMaxTerms = 255;
 
     Packed(const PatchSpline& spline, int channels) : terms(spline.maxTerms(channels)) {
-        static const auto kDefaults = [] {
-            std::array<std::array<float, kDefaultCentreCount>, 2> xy{};
-            for (size_t i = 0; i < kDefaultCentreCount; ++i) {
-                xy[0][i] = float(defaultCentres()[i].x);
-                xy[1][i] = float(defaultCentres()[i].y);
-            }
-            return xy;
-        }();
+        static const LayoutCentres kPaper(CentreLayout::Paper), kNested(CentreLayout::Nested);
         if (spline.centres.empty()) {
-            TESSERA_CHECK(terms <= kDefaultCentreCount);
-            std::copy_n(kDefaults[0].data(), kDefaultCentreCount, centreX);
-            std::copy_n(kDefaults[1].data(), kDefaultCentreCount, centreY);
+            const LayoutCentres& layout = spline.layout == CentreLayout::Nested ? kNested : kPaper;
+            TESSERA_CHECK(size_t(terms) <= layout.x.size());
+            std::copy_n(layout.x.data(), terms, centreX);
+            std::copy_n(layout.y.data(), terms, centreY);
         } else {
             for (int i = 0; i < terms; ++i) {
                 centreX[i] = spline.centres[size_t(i)].x;

@@ -248,6 +248,23 @@ TEST(Document, IsRefusedWithoutFiniteColours) {
     }
 }
 
+TEST(Document, IsRefusedWithColoursThatTheFormatLacks) {
+    Document d;
+    d.mesh = gridMesh(10, 10, 2, 2);
+    ASSERT_TRUE(encodeDocument(d));
+    d.mesh.setColourBasis(ColourBasis::Opponent);
+    const auto opponent = encodeDocument(d);
+    ASSERT_FALSE(opponent);
+    EXPECT_THAT(opponent.error().message, HasSubstr("opponent basis"));
+    d.mesh.setColourBasis(ColourBasis::Rgb);
+    PatchSpline spline = d.mesh.spline(PatchId(3));
+    spline.layout = CentreLayout::Nested;
+    d.mesh.setSpline(PatchId(3), spline);
+    const auto nested = encodeDocument(d);
+    ASSERT_FALSE(nested);
+    EXPECT_THAT(nested.error().message, HasSubstr("nested centres"));
+}
+
 TEST(Document, IsRefusedWhereItCouldNotBeLoaded) {
     Document empty;
     EXPECT_FALSE(encodeDocument(empty));

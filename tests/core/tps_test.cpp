@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "tests/support/test_meshes.h"
 
@@ -163,6 +164,88 @@ TEST(NodalBasis, InterpolatesAndFulfilsTheSideConditions) {
             }
             EXPECT_NEAR(value, nodal[i], 1e-10);
         }
+    }
+}
+
+// The Lebesgue constant of a basis over the domain: by how much its spline may exceed its nodal values.
+double lebesgueConstant(const NodalBasis& basis, std::span<const glm::dvec2> centres) {
+    constexpr int kSteps = 30;
+    double worst = 0;
+    for (int a = 0; a <= kSteps; ++a)
+        for (int b = 0; a + b <= kSteps; ++b) {
+            const glm::dvec2 at =
+                domainPoint({double(a) / kSteps, double(b) / kSteps, double(kSteps - a - b) / kSteps});
+            double sum = 0;
+            for (int j = 0; j < basis.n; ++j) {
+                const auto k = [&](int r) { return basis.toCoefficients[size_t(r * basis.n + j)]; };
+                double weight = k(0) + k(1) * at.x + k(2) * at.y;
+                for (int i = 0; i < basis.n; ++i) {
+                    const glm::dvec2 d = at - centres[size_t(i)];
+                    weight += k(3 + i) * tpsKernel(d.x * d.x + d.y * d.y);
+                }
+                sum += std::abs(weight);
+            }
+            worst = std::max(worst, sum);
+        }
+    return worst;
+}
+
+TEST(NestedCentres, EveryPrefixIsSpreadWell) {
+    std::string all;
+    for (int n = 3; n <= kNestedCentreCount; ++n) {
+        const double constant = lebesgueConstant(nestedNodalBasis(n), nestedCentres());
+        EXPECT_LT(constant, 2.4) << n;  // 2.16 at 40 is the largest
+        all += std::to_string(n) + ":" + std::to_string(constant) + " ";
+    }
+    RecordProperty("constants", all);
+    // A prefix that leaves a side out is told: the first 12 of the nested centres that lie left of x = 1/2.
+    std::vector<glm::dvec2> lopsided;
+    for (const glm::dvec2 c : nestedCentres())
+        if (c.x < .5 && lopsided.size() < 12) lopsided.push_back(c);
+    EXPECT_GT(lebesgueConstant(nodalBasis(lopsided), lopsided), 2.4);
+}
+
+TEST(NestedCentres, AreTheSameOnAllSidesAndBothWays) {
+    std::array<std::vector<int>, 3> along;  // in 24ths from the side's first corner
+    for (const glm::dvec2 c : nestedCentres()) {
+        const Barycentric b = barycentricOf(c);
+        const double parts[] = {b.x, b.y, b.z};
+        for (int side = 0; side < 3; ++side)
+            if (parts[(side + 2) % 3] < 1e-12)
+                along[size_t(side)].push_back(int(std::lround(24 * parts[(side + 1) % 3])));
+    }
+    for (auto& side : along) std::sort(side.begin(), side.end());
+    EXPECT_EQ(along[0].size(), 9u);
+    EXPECT_EQ(along[1], along[0]);
+    EXPECT_EQ(along[2], along[0]);
+    for (size_t i = 0; i < along[0].size(); ++i) EXPECT_EQ(along[0][i] + along[0][8 - i], 24);
+}
+
+TEST(NestedCentres, SplinesGoThroughTheirValues) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (const int n : {3, 20, 48}) {
+        const NodalBasis& basis = nestedNodalBasis(n);
+        EXPECT_EQ(&basis, &nestedNodalBasis(n));
+        PatchSpline spline;
+        spline.layout = CentreLayout::Nested;
+        spline.terms[0] = uint8_t(n);
+        std::vector<double> values(static_cast<size_t>(n));
+        for (double& v : values) v = unit(random);
+        for (int r = 0; r < n + 3; ++r) {
+            double sum = 0;
+            for (int i = 0; i < n; ++i) sum += basis.toCoefficients[size_t(r * n + i)] * values[size_t(i)];
+            spline.coefficients.push_back(float(sum));
+        }
+        for (const auto evaluate : {evaluateSplines, evaluateSplinesScalar})
+            for (size_t i = 0; i < values.size(); ++i) {
+                const float x = float(nestedCentres()[i].x), y = float(nestedCentres()[i].y);
+                float value = 0;
+                float* out[] = {&value};
+                evaluate(spline, 1, &x, &y, 1, out);
+                EXPECT_NEAR(value, values[i], 6e-5) << i << " of " << n;
+                EXPECT_NEAR(evaluateSpline(spline, 0, nestedCentres()[i]), values[i], 6e-5);
+            }
     }
 }
 
