@@ -58,12 +58,18 @@ void printFigures(const std::string& title, const std::vector<Column>& columns,
     std::vector<size_t> widths(columns.size(), 3);
     for (const auto& line : cells)
         for (size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], line[c].size());
+    const auto isText = [&](size_t c) {
+        return !rows.empty() && rows[0].value(columns[c].key, Json()).is_string();
+    };
     for (size_t r = 0; r < cells.size(); ++r) {
-        for (size_t c = 0; c < columns.size(); ++c)
-            std::printf("%s %*s", c == 0 ? "|" : " |", int(widths[c]), cells[r][c].c_str());
-        std::printf(" |\n");
+        for (size_t c = 0; c < columns.size(); ++c) {
+            const int width = int(widths[c]);
+            std::printf("| %*s ", isText(c) ? -width : width, cells[r][c].c_str());
+        }
+        std::printf("|\n");
         if (r > 0) continue;
-        for (const size_t width : widths) std::printf("|%s:", std::string(width + 1, '-').c_str());
+        for (size_t c = 0; c < columns.size(); ++c)
+            std::printf("|%s%s", std::string(widths[c] + 1, '-').c_str(), isText(c) ? "-" : ":");
         std::printf("|\n");
     }
     std::printf("\n");
