@@ -47,17 +47,21 @@ class Linker {
         return was;
     }
 
-    // Adds the pixels that follow `at`. Side neighbours come first, so that the corners of staircases are
-    // walked through rather than left behind.
+    // Adds the pixels that follow `at`. Diagonals come first and take the corners beside them off the map:
+    // Canny leaves staircases, whose corners would make an oblique edge longer than it is.
     void walk(glm::ivec2 at, EdgeChain& chain) {
         static constexpr std::array<std::array<int, 2>, 8> kSteps{
-            {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+            {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
         for (bool moved = true; moved;) {
             moved = false;
-            for (const auto& step : kSteps) {
-                const glm::ivec2 next = at + glm::ivec2(step[0], step[1]);
-                if (!remove(next)) continue;
-                chain.push_back(at = next);
+            for (const auto& [dx, dy] : kSteps) {
+                if (!remove({at.x + dx, at.y + dy})) continue;
+                if (dx != 0 && dy != 0) {
+                    remove({at.x + dx, at.y});
+                    remove({at.x, at.y + dy});
+                }
+                at = {at.x + dx, at.y + dy};
+                chain.push_back(at);
                 moved = true;
                 break;
             }
