@@ -285,8 +285,9 @@ int run(const Arguments& arguments) {
 }
 
 constexpr const char* kFooter =
-    "Each measurement runs in a child process of its own. Seconds, CPU s (of all threads) and MB (the most\n"
-    "memory held) are those of the child up to the end of the vectorization, before anything is measured.\n"
+    "Each measurement runs in a child process of its own. Seconds and CPU s (of all threads) are those of "
+    "the\n"
+    "vectorization; MB is the most memory that the child has held up to its end, with the picture.\n"
     "Errors are those of 'compare', of a rendering with 4 samples a pixel. seam: mean difference of colours\n"
     "across edges that are no features. slivers: patches whose base triangle has an angle below 8 degrees.\n"
     "folds: what 'validate' finds. kB: the document without the photo; loss dB: what storing it costs.\n"

@@ -48,9 +48,10 @@ class Bench : public testing::TemporaryFolderTest {
     }
 
     // Runs `tessera-cli bench ARGUMENTS` in the folder; its exit code.
-    int bench(const std::string& arguments) const {
+    int bench(const std::string& arguments) const { return run("bench " + arguments); }
+    int run(const std::string& arguments) const {
         const std::string command =
-            "cd '" + mFolder.string() + "' && '" TESSERA_CLI "' bench " + arguments + " >out 2>err";
+            "cd '" + mFolder.string() + "' && '" TESSERA_CLI "' " + arguments + " >out 2>err";
         const int status = std::system(command.c_str());
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
@@ -116,6 +117,19 @@ TEST_F(Bench, TellsEveryFigureOfAFolder) {
     // The ramp has no edge: the mean is the disc's.
     EXPECT_TRUE(rowOf(all["runs"], "ramp", 60)["recall"].is_null());
     EXPECT_EQ(mean["recall"], rowOf(all["runs"], "disc", 60)["recall"]);
+}
+
+TEST_F(Bench, AgreesWithTheOtherCommands) {
+    ASSERT_EQ(bench("pictures/disc.png --methods paper --patches 60 --json figures.json"), 0);
+    const json row = rowOf(figures()["runs"], "disc");
+    ASSERT_EQ(run("vectorize pictures/disc.png -o a.tessera --patches 60 --no-embed --quiet"), 0);
+    ASSERT_EQ(run("render a.tessera -o a.png --samples 4 --quiet"), 0);
+    ASSERT_EQ(run("compare pictures/disc.png a.png --json"), 0);
+    EXPECT_NEAR(json::parse(contentOf("out"))["psnr"], row["psnr_decoded"], 1e-9);
+    ASSERT_EQ(run("validate a.tessera --json"), 0);
+    EXPECT_NEAR(json::parse(contentOf("out"))["seam_mean"], row["seam_mean"], .1);
+    ASSERT_EQ(run("info a.tessera --json"), 0);
+    EXPECT_EQ(json::parse(contentOf("out"))["patches"], row["patches"]);
 }
 
 TEST_F(Bench, FindsTheReferenceEdgesInAMeshThatIsCutAlongThem) {
