@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "app/cli_bench.h"
 #include "app/cli_compare.h"
 #include "app/cli_info.h"
 #include "app/cli_render.h"
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
     cli::addValidateCommand(app, exitCode);
     cli::addCompareCommand(app, exitCode);
     cli::addStagesCommand(app, exitCode);
+    cli::addBenchCommand(app, exitCode);
     // CLI11 would only say that a command is missing.
     const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
     if (argc > 1 && argv[1][0] != '-' &&

@@ -1,10 +1,10 @@
 // See cli_support.h.
 #include "app/cli_support.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -140,6 +140,16 @@ Result<std::vector<uint8_t>> readFile(const std::string& path) {
     if (error || !file || !file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
         return unreadable("check its permissions");
     return bytes;
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double peakRssMb() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return double(usage.ru_maxrss) / 1024;
 }
 
 Json toJson(const ImageDifference& d) {

@@ -2,6 +2,7 @@
 // work.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -77,6 +78,10 @@ class ProgressDisplay {
 Result<void> checkWritable(const std::string& path);
 
 Result<std::vector<uint8_t>> readFile(const std::string& path);
+
+double secondsSince(std::chrono::steady_clock::time_point start);
+// The most memory that this process has held so far, in MiB.
+double peakRssMb();
 
 // Measures of a difference, by the names and units of the field: 0..255, dB; null where infinite or missing.
 Json toJson(const ImageDifference& difference);

@@ -1,10 +1,7 @@
 // See cli_vectorize.h.
 #include "app/cli_vectorize.h"
 
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -32,16 +29,6 @@ struct Arguments {
     bool embed = true;
     bool json = false;
 };
-
-double secondsSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double peakRssMb() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return double(usage.ru_maxrss) / 1024;
-}
 
 // The document as a reader will find it: colours rounded as in the file, elements in the file's order. Errors
 // and preview are taken from that, so that they are those of the stored document.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -17,23 +16,6 @@ namespace {
 constexpr int kRadius = 5;
 constexpr int kWindow = 2 * kRadius + 1;
 constexpr size_t kRowGrain = 16;
-
-// Interleaved RGB over white, rounded to 8 bits.
-std::vector<uint8_t> overWhite(const Image& image) {
-    std::vector<uint8_t> rgb(image.planeSize() * 3);
-    parallelFor(image.planeSize(), 16384, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-            const float alpha = image.hasAlpha() ? image.plane(3)[i] : 1;
-            const float white = alpha < 1 ? 1 - std::max(alpha, 0.f) : 0;
-            for (int c = 0; c < 3; ++c) {
-                const float value = image.plane(c)[i] + white;
-                // The first comparison is false for NaN too.
-                rgb[3 * i + size_t(c)] = uint8_t(value > 0 ? std::lround(std::min(value, 1.f) * 255) : 0);
-            }
-        }
-    });
-    return rgb;
-}
 
 double luma(const uint8_t* rgb) {
     return .299 * rgb[0] + .587 * rgb[1] + .114 * rgb[2];
@@ -138,6 +120,22 @@ std::string sizeOf(const Image& image) {
 
 }  // namespace
 
+std::vector<uint8_t> rgb8OverWhite(const Image& image) {
+    std::vector<uint8_t> rgb(image.planeSize() * 3);
+    parallelFor(image.planeSize(), 16384, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const float alpha = image.hasAlpha() ? image.plane(3)[i] : 1;
+            const float white = alpha < 1 ? 1 - std::max(alpha, 0.f) : 0;
+            for (int c = 0; c < 3; ++c) {
+                const float value = image.plane(c)[i] + white;
+                // The first comparison is false for NaN too.
+                rgb[3 * i + size_t(c)] = uint8_t(value > 0 ? std::lround(std::min(value, 1.f) * 255) : 0);
+            }
+        }
+    });
+    return rgb;
+}
+
 Result<ImageDifference> compareImages(const Image& a, const Image& b) {
     if (a.empty() || b.empty() || a.channels() < 3 || b.channels() < 3)
         return failure(ErrorCode::Usage,
@@ -147,8 +145,8 @@ Result<ImageDifference> compareImages(const Image& a, const Image& b) {
                                              " pixels; scale one to the size of the other");
     const auto width = size_t(a.width());
     const auto height = size_t(a.height());
-    const std::vector<uint8_t> pixelsA = overWhite(a);
-    const std::vector<uint8_t> pixelsB = overWhite(b);
+    const std::vector<uint8_t> pixelsA = rgb8OverWhite(a);
+    const std::vector<uint8_t> pixelsB = rgb8OverWhite(b);
     std::vector<RowSums> rows(height);
     parallelFor(height, kRowGrain, [&](size_t begin, size_t end) {
         for (size_t y = begin; y < end; ++y)

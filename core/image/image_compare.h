@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "core/base/result.h"
 #include "core/image/image.h"
@@ -21,6 +23,9 @@ struct ImageDifference {
     double psnrLuma = 0;
     std::optional<double> ssim;
 };
+
+// Interleaved RGB composed over white, rounded to 8 bits: the values that are compared.
+std::vector<uint8_t> rgb8OverWhite(const Image& image);
 
 // Both images are composed over white and rounded to 8 bits first. Fails with Usage where the sizes differ.
 Result<ImageDifference> compareImages(const Image& a, const Image& b);

@@ -123,6 +123,12 @@ Result<std::map<std::string, std::string>> chosenVariants(const VectorizeSetting
 
 }  // namespace
 
+std::vector<std::string> methodNames() {
+    std::vector<std::string> names;
+    for (const auto& [name, variants] : methods()) names.push_back(name);
+    return names;
+}
+
 Result<VectorImage> vectorize(const Image& image, const VectorizeSettings& settings, Progress& progress,
                               const StageObserver& observe) {
     if (image.empty()) return failure(ErrorCode::Usage, "the picture has no pixels");

@@ -29,6 +29,9 @@ struct StageVariants {
 };
 const std::vector<StageVariants>& stageTable();
 
+// What VectorizeSettings::method may be.
+std::vector<std::string> methodNames();
+
 // Looks at what each stage hands to the next (the pictures of Fig. 2 are made from it); any of them may be
 // empty.
 struct StageObserver {
