@@ -142,9 +142,9 @@ Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep) {
         return broken("has a size that the format does not hold");
     bool storable = mesh.colourBasis() == ColourBasis::Rgb;
     mesh.forEachPatch(
-        [&](PatchId p) { storable = storable && mesh.spline(p).layout == CentreLayout::Paper; });
+        [&](PatchId p) { storable = storable && mesh.spline(p).sites.empty(); });
     if (!storable)
-        return broken("has colours in the opponent basis or on nested centres, which the format lacks");
+        return broken("has colours in the opponent basis or on chosen sites, which the format lacks");
     if (connectivity.faceCount() == 0 || connectivity.faceCount() > kMaxFaces)
         return broken("has no patches, or more than the format holds");
 

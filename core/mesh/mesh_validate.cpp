@@ -76,7 +76,7 @@ void checkSplines(const PatchMesh& mesh, Findings& findings) {
         for (int c = 0; c < mesh.channels(); ++c) {
             const int terms = s.terms[size_t(c)];
             sound =
-                sound && terms <= (int(s.centres.empty() ? centresOf(s.layout).size() : s.centres.size()));
+                sound && terms <= int(s.centreCount());
             sound = sound && (terms == 0 || terms >= 3);
         }
         sound = sound && std::all_of(s.coefficients.begin(), s.coefficients.end(),

@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "core/base/check.h"
 
@@ -29,36 +28,33 @@ const std::array<glm::dvec2, kDefaultCentreCount>& defaultCentres() {
     return centres;
 }
 
-namespace {
-
-// In 24ths of the domain. After the first seven, each is the point of the lattice where the splines of those
-// before it err most (the largest power function); but one on a side brings its mirror images on all sides
-// with it, so that two patches have the same centres along their common edge.
-constexpr std::array<std::array<uint8_t, 3>, kNestedCentreCount> kNestedIn24ths{
-    {{24, 0, 0},  {0, 24, 0},  {0, 0, 24}, {12, 12, 0}, {0, 12, 12}, {12, 0, 12}, {8, 8, 8},  {18, 6, 0},
-     {0, 6, 18},  {6, 18, 0},  {18, 0, 6}, {6, 0, 18},  {0, 18, 6},  {13, 6, 5},  {6, 13, 5}, {5, 5, 14},
-     {10, 4, 10}, {4, 10, 10}, {20, 2, 2}, {2, 20, 2},  {2, 2, 20},  {15, 0, 9},  {0, 15, 9}, {15, 9, 0},
-     {0, 9, 15},  {9, 0, 15},  {9, 15, 0}, {10, 10, 4}, {16, 3, 5},  {3, 16, 5},  {3, 0, 21}, {3, 21, 0},
-     {21, 3, 0},  {0, 3, 21},  {21, 0, 3}, {0, 21, 3},  {13, 3, 8},  {3, 13, 8},  {8, 3, 13}, {3, 8, 13},
-     {4, 3, 17},  {6, 7, 11},  {6, 16, 2}, {16, 6, 2},  {9, 13, 2},  {13, 9, 2},  {6, 11, 7}, {2, 6, 16}}};
-
-}  // namespace
-
-const std::array<glm::dvec2, kNestedCentreCount>& nestedCentres() {
-    static const auto centres = [] {
-        std::array<glm::dvec2, kNestedCentreCount> all{};
-        for (size_t i = 0; i < all.size(); ++i) {
-            const auto& c = kNestedIn24ths[i];
-            all[i] = domainPoint(Barycentric(c[0] / 24.0, c[1] / 24.0, c[2] / 24.0));
-        }
+const std::array<glm::dvec2, kCentreSites>& centreSites() {
+    static const auto sites = [] {
+        std::array<glm::dvec2, kCentreSites> all{};
+        constexpr int n = kSiteSubdivisions;
+        const auto point = [](int i, int j) {
+            return domainPoint(Barycentric(double(n - i - j) / n, double(i) / n, double(j) / n));
+        };
+        all[0] = point(0, 0);
+        all[1] = point(n, 0);
+        all[2] = point(0, n);
+        size_t count = 3;
+        for (int j = 0; j <= n; ++j)
+            for (int i = 0; i + j <= n; ++i)
+                if (i < n && j < n && i + j > 0) all[count++] = point(i, j);
         return all;
     }();
-    return centres;
+    return sites;
 }
 
-std::span<const glm::dvec2> centresOf(CentreLayout layout) {
-    if (layout == CentreLayout::Nested) return nestedCentres();
-    return defaultCentres();
+glm::dvec2 PatchSpline::centre(int i) const {
+    if (!sites.empty()) return centreSites()[sites[size_t(i)]];
+    return centres.empty() ? defaultCentres()[size_t(i)] : glm::dvec2(centres[size_t(i)]);
+}
+
+size_t PatchSpline::centreCount() const {
+    if (!sites.empty()) return sites.size();
+    return centres.empty() ? defaultCentres().size() : centres.size();
 }
 
 size_t PatchSpline::offset(int c) const {
@@ -117,19 +113,6 @@ NodalBasis nodalBasis(std::span<const glm::dvec2> centres) {
 const NodalBasis& defaultNodalBasis() {
     static const NodalBasis basis = nodalBasis(defaultCentres());
     return basis;
-}
-
-const NodalBasis& nestedNodalBasis(int n) {
-    TESSERA_CHECK(n >= 3 && n <= kNestedCentreCount);
-    struct Entry {
-        std::once_flag once;
-        NodalBasis basis;
-    };
-    static std::array<Entry, kNestedCentreCount + 1> entries;
-    Entry& entry = entries[size_t(n)];
-    std::call_once(entry.once,
-                   [&] { entry.basis = nodalBasis(std::span(nestedCentres()).first(size_t(n))); });
-    return entry.basis;
 }
 
 }  // namespace tessera

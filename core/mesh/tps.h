@@ -35,24 +35,20 @@ double tpsKernel(double squaredDistance);
 constexpr int kDefaultCentreCount = 16;
 const std::array<glm::dvec2, kDefaultCentreCount>& defaultCentres();
 
-// Centres of which every prefix is spread well, so that a channel may have any number of terms: the corners,
-// the middles of ab, bc, ca, the centroid, and so on as COLOUR.md lists them.
-constexpr int kNestedCentreCount = 48;
-const std::array<glm::dvec2, kNestedCentreCount>& nestedCentres();
-
-// Which centres a spline has that lists none of its own.
-enum class CentreLayout : uint8_t { Paper, Nested };
-
-// Those centres: defaultCentres() or nestedCentres().
-std::span<const glm::dvec2> centresOf(CentreLayout layout);
+// The places that a spline can choose its centres from: the points of the domain's lattice of
+// kSiteSubdivisions steps a side; the corners a, b, c first, then row by row from side ab.
+constexpr int kSiteSubdivisions = 10;
+constexpr int kCentreSites = (kSiteSubdivisions + 1) * (kSiteSubdivisions + 2) / 2;
+const std::array<glm::dvec2, kCentreSites>& centreSites();
 
 // Colour of one patch: for each channel f(x) = b0 + b1 x.x + b2 x.y + sum over i of alpha_i phi(|x -
 // centre_i|), x in the parametric domain, values in the mesh's ColourBasis. Channels share one list of
 // centres; a channel with n terms uses its first n. The alphas fulfil sum alpha = 0 and sum alpha centre = 0.
 struct PatchSpline {
     std::array<uint8_t, kMaxChannels> terms{};  // alphas per channel: 0, or 3 and more
-    CentreLayout layout = CentreLayout::Paper;
-    // The centres where they are not those of the layout; else empty.
+    // The centres: places among centreSites(), all different; or, where there are none, points of the
+    // spline's own; or, where there are none of those either, the default ones.
+    std::vector<uint8_t> sites;
     std::vector<glm::vec2> centres;
     // Channel after channel: b0, b1, b2, alpha_0 .. alpha_(n-1).
     std::vector<float> coefficients;
@@ -61,9 +57,8 @@ struct PatchSpline {
 
     // Where channel c's coefficients begin.
     size_t offset(int c) const;
-    glm::dvec2 centre(int i) const {
-        return centres.empty() ? centresOf(layout)[size_t(i)] : glm::dvec2(centres[size_t(i)]);
-    }
+    glm::dvec2 centre(int i) const;
+    size_t centreCount() const;
     int maxTerms(int channels) const;
 };
 
@@ -81,6 +76,11 @@ void evaluateSplines(const PatchSpline& spline, int channels, const float* x, co
 void evaluateSplinesScalar(const PatchSpline& spline, int channels, const float* x, const float* y,
                            size_t count, float* const* out);
 
+// phi of the distances from `count` points of the domain to each of `centres`: out[i * stride + k] for centre
+// i and point k. As accurate as evaluateSplines.
+void evaluateKernels(std::span<const glm::vec2> centres, const float* x, const float* y, size_t count,
+                     float* out, size_t stride);
+
 // What the machine offers and evaluateSplines uses: "avx2" or "scalar".
 const char* splineInstructionSet();
 
@@ -95,7 +95,5 @@ struct NodalBasis {
 NodalBasis nodalBasis(std::span<const glm::dvec2> centres);
 // nodalBasis of the default centres, computed once.
 const NodalBasis& defaultNodalBasis();
-// nodalBasis of the first n nested centres, 3 <= n <= kNestedCentreCount; each computed once. Thread-safe.
-const NodalBasis& nestedNodalBasis(int n);
 
 }  // namespace tessera

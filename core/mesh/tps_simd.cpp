@@ -22,33 +22,16 @@ constexpr float kHalfLog2 = .34657359f;
 constexpr float kLogPolynomial[8] = {3.19697829e-07f, 1.44265211f, -.720386612f, .472499525f,
                                      -.323115935f,    .190420831f, -.076848726f, .0147787208f};
 
-// The centres of a layout in single precision.
-struct LayoutCentres {
-    explicit LayoutCentres(CentreLayout layout) {
-        for (const glm::dvec2 c : centresOf(layout)) {
-            x.push_back(float(c.x));
-            y.push_back(float(c.y));
-        }
-    }
-    std::vector<float> x, y;
-};
-
 // A spline with its centres side by side and the same number of terms for each channel, the missing alphas 0.
 struct Packed {
     static constexpr int kMaxTerms = 255;
 
     Packed(const PatchSpline& spline, int channels) : terms(spline.maxTerms(channels)) {
-        static const LayoutCentres kPaper(CentreLayout::Paper), kNested(CentreLayout::Nested);
-        if (spline.centres.empty()) {
-            const LayoutCentres& layout = spline.layout == CentreLayout::Nested ? kNested : kPaper;
-            TESSERA_CHECK(size_t(terms) <= layout.x.size());
-            std::copy_n(layout.x.data(), terms, centreX);
-            std::copy_n(layout.y.data(), terms, centreY);
-        } else {
-            for (int i = 0; i < terms; ++i) {
-                centreX[i] = spline.centres[size_t(i)].x;
-                centreY[i] = spline.centres[size_t(i)].y;
-            }
+        TESSERA_CHECK(size_t(terms) <= spline.centreCount());
+        for (int i = 0; i < terms; ++i) {
+            const glm::dvec2 c = spline.centre(i);
+            centreX[i] = float(c.x);
+            centreY[i] = float(c.y);
         }
         const float* k = spline.coefficients.data();
         for (int c = 0; c < channels; ++c) {
@@ -201,6 +184,19 @@ void evaluateSplinesScalar(const PatchSpline& spline, int channels, const float*
                            size_t count, float* const* out) {
     TESSERA_CHECK(channels >= 1 && channels <= kMaxChannels);
     evaluateScalar(Packed(spline, channels), channels, x, y, count, out);
+}
+
+#if defined(__x86_64__)
+__attribute__((target_clones("avx2", "default")))
+#endif
+void evaluateKernels(std::span<const glm::vec2> centres, const float* x, const float* y, size_t count, float* out, size_t stride) {
+    for (const glm::vec2 c : centres) {
+        for (size_t k = 0; k < count; ++k) {
+            const float dx = x[k] - c.x, dy = y[k] - c.y;
+            out[k] = kHalfLog2 * scaledKernel(dx * dx + dy * dy);
+        }
+        out += stride;
+    }
 }
 
 const char* splineInstructionSet() {

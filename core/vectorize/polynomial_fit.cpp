@@ -72,7 +72,7 @@ __attribute__((target_clones("avx2", "default"))) void sumRow4(const float* cons
     sumRow<4>(rows, count, t0, dt, base, out);
 }
 
-constexpr int kBinomial[kGramPowers][kGramPowers] = {{1},
+constexpr int kBinomial[11][11] = {{1},
                                                      {1, 1},
                                                      {1, 2, 1},
                                                      {1, 3, 3, 1},
@@ -80,7 +80,7 @@ constexpr int kBinomial[kGramPowers][kGramPowers] = {{1},
                                                      {1, 5, 10, 10, 5, 1},
                                                      {1, 6, 15, 20, 15, 6, 1},
                                                      {1, 7, 21, 35, 35, 21, 7, 1},
-                                                     {1, 8, 28, 56, 70, 56, 28, 8, 1}};
+                                                     {1, 8, 28, 56, 70, 56, 28, 8, 1},{1,9,36,84,126,126,84,36,9,1},{1,10,45,120,210,252,210,120,45,10,1}};
 
 // Exponents of the terms by ascending degree.
 struct Exponents {
@@ -126,7 +126,7 @@ PolynomialFit::PolynomialFit(const Image& picture)
     for (size_t n = 0; n < mEvenPowers.size(); ++n) {
         auto& e = mEvenPowers[n];
         if (n >= 2) e = mEvenPowers[n - 2];
-        if (n == 1) e = {1, 0, 0, 0, 0};
+        if (n == 1) { e = {}; e[0] = 1; }
         if (n < 2) continue;
         const double u2 = .25 * double(n - 1) * double(n - 1);
         double power = 2;

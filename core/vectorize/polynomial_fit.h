@@ -14,7 +14,7 @@ namespace tessera {
 
 class PolynomialFit {
   public:
-    static constexpr int kDegree = 4;
+    static constexpr int kDegree = 5;
     static constexpr int kTerms = (kDegree + 1) * (kDegree + 2) / 2;
 
     // Copies the picture (16 bytes a pixel).

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 
@@ -34,7 +35,17 @@ double Refiner::totalError() const {
 }
 
 double Refiner::triangleError(LatticePoint a, LatticePoint b, LatticePoint c) const {
-    return mFit.error({toPixels(a), toPixels(b), toPixels(c)});
+    static const double grow = getenv("GROW") ? atof(getenv("GROW")) : 0;
+    std::array<glm::dvec2, 3> t{toPixels(a), toPixels(b), toPixels(c)}, g = t;
+    if (grow > 0)
+        for (size_t k = 0; k < 3; ++k) {
+            glm::dvec2 u = t[(k + 1) % 3] - t[k], v = t[(k + 2) % 3] - t[k];
+            u /= std::sqrt(u.x * u.x + u.y * u.y);
+            v /= std::sqrt(v.x * v.x + v.y * v.y);
+            const double s = cross(u, v);  // sine of the angle
+            g[k] -= (u + v) * std::min(grow / std::max(s, 1e-6), 2.0 * grow);
+        }
+    return mFit.error(g);
 }
 
 bool Refiner::wellShaped(LatticePoint a, LatticePoint b, LatticePoint c) const {

@@ -258,11 +258,11 @@ TEST(Document, IsRefusedWithColoursThatTheFormatLacks) {
     EXPECT_THAT(opponent.error().message, HasSubstr("opponent basis"));
     d.mesh.setColourBasis(ColourBasis::Rgb);
     PatchSpline spline = d.mesh.spline(PatchId(3));
-    spline.layout = CentreLayout::Nested;
+    spline.sites = {0, 1, 2};
     d.mesh.setSpline(PatchId(3), spline);
     const auto nested = encodeDocument(d);
     ASSERT_FALSE(nested);
-    EXPECT_THAT(nested.error().message, HasSubstr("nested centres"));
+    EXPECT_THAT(nested.error().message, HasSubstr("chosen sites"));
 }
 
 TEST(Document, IsRefusedWhereItCouldNotBeLoaded) {

@@ -1,0 +1,49 @@
+// The Newton basis of the splines over a list of sites: the spaces of the first 3, 4, 5, ... centres lie in
+// each other, and function k belongs to the space of the first k + 1 centres, is 1 at centre k and 0 at the
+// centres before it. So a spline of fewer terms is a prefix of its factors, and each factor is what the
+// spline differs by, at one centre, from the one before. (Mueller and Schaback, A Newton basis for kernel
+// spaces, 2009.)
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "core/mesh/tps.h"
+
+namespace tessera {
+
+class NewtonBasis {
+  public:
+    // `sites` begin with the corners 0, 1, 2 and are all different. The first three functions are the
+    // barycentric coordinates.
+    explicit NewtonBasis(std::span<const uint8_t> sites);
+
+    int size() const { return int(mSites.size()); }
+
+    // The functions at `count` points of the domain: out[k * stride + i] is function k at point i.
+    void evaluate(const float* x, const float* y, size_t count, float* out, size_t stride) const;
+    // The functions and their derivatives along the domain's axes at one point.
+    void evaluateWithDerivatives(glm::dvec2 at, double* values, double* alongX, double* alongY) const;
+
+    // The spline with these factors, for each channel of its first functions (at least 3).
+    PatchSpline spline(std::span<const std::span<const double>> factors) const;
+
+  private:
+    // Coefficient `row` of function k: b0, b1, b2, then the alphas.
+    double& coefficient(int row, int k) { return mCoefficients[size_t(row) * mSites.size() + size_t(k)]; }
+    double coefficient(int row, int k) const { return mCoefficients[size_t(row) * mSites.size() + size_t(k)]; }
+
+    std::vector<uint8_t> mSites;
+    std::vector<glm::vec2> mCentres;
+    std::vector<double> mCoefficients;
+};
+
+// What a spline may be made of: the barycentric coordinates, and for each further site the spline with alpha
+// 1 there and the alphas at the corners that the side conditions ask for. Values at `count` points:
+// out[s * stride + i] for site s.
+void evaluateSiteFunctions(const float* x, const float* y, size_t count, float* out, size_t stride);
+
+}  // namespace tessera
