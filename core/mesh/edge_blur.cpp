@@ -96,9 +96,9 @@ void EdgeBlur::collectChains(const PatchMesh& mesh, double sharpen) {
         for (const VertexId v : {c.origin(h), c.target(h)})
             featuresAt[v.index] = uint8_t(std::min(3, featuresAt[v.index] + 1));
     });
-    std::vector<bool> taken(c.edgeCapacity(), false);
+    mFeatureOf.assign(c.edgeCapacity(), kNone);
     mesh.forEachEdge([&](EdgeId e) {
-        if (taken[e.index] || !isFeature(mesh, e)) return;
+        if (mFeatureOf[e.index] != kNone || !isFeature(mesh, e)) return;
         HalfedgeId first = HalfedgeMesh::halfedge(e);
         bool closed = false;
         for (HalfedgeId back = successor(mesh, HalfedgeMesh::twin(first), featuresAt); back.valid();
@@ -107,12 +107,10 @@ void EdgeBlur::collectChains(const PatchMesh& mesh, double sharpen) {
             closed = HalfedgeMesh::edge(first) == e;
             if (closed) break;
         }
-        std::vector<HalfedgeId> run;
-        for (HalfedgeId h = first; h.valid() && !taken[HalfedgeMesh::edge(h).index];
-             h = successor(mesh, h, featuresAt)) {
-            taken[HalfedgeMesh::edge(h).index] = true;
+        std::vector<HalfedgeId> run{first};
+        for (HalfedgeId h = successor(mesh, first, featuresAt); h.valid() && h != first;
+             h = successor(mesh, h, featuresAt))
             run.push_back(h);
-        }
         addChain(mesh, run, closed, sharpen, featuresAt);
     });
 }
@@ -152,6 +150,7 @@ void EdgeBlur::addChain(const PatchMesh& mesh, const std::vector<HalfedgeId>& ru
                      std::max(glm::length(p[0] - 2.0 * p[1] + p[2]), glm::length(p[1] - 2.0 * p[2] + p[3])) /
                      (kSegments * kSegments);
         chain.reach = std::max(chain.reach, kBlurReach * std::max(f.sigma[0], f.sigma[1]));
+        mFeatureOf[HalfedgeMesh::edge(h).index] = uint32_t(mFeatures.size());
         mFeatures.push_back(f);
     }
     joinTangents(first, closed);
@@ -257,6 +256,21 @@ bool EdgeBlur::findFoot(const Feature& f, glm::dvec2 at, Foot& foot) {
     return nearer;
 }
 
+double EdgeBlur::fade(const Feature& f, double t, double sigma) const {
+    const Chain& chain = mChains[f.chain];
+    const double arc = f.arcAt(t);
+    return blurFade(
+        std::min(chain.fadesAtBegin ? arc : HUGE_VAL, chain.fadesAtEnd ? chain.length - arc : HUGE_VAL),
+        sigma);
+}
+
+double EdgeBlur::strength(EdgeId e, double t) const {
+    if (mFeatureOf.empty() || mFeatureOf[e.index] == kNone) return 0;
+    const Feature& f = mFeatures[mFeatureOf[e.index]];
+    const double along = f.halfedge == HalfedgeMesh::halfedge(e) ? t : 1 - t, sigma = f.sigmaAt(along);
+    return sigma > 0 ? fade(f, along, sigma) : 0;
+}
+
 // 0 left, 1 right.
 int EdgeBlur::sideOf(const Feature& f, const Reach& reach, PatchId p, glm::dvec2 at, const Foot& foot) {
     if (p == f.patches[0]) return 0;
@@ -273,20 +287,15 @@ int EdgeBlur::terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms
     int count = 0;
     for (size_t i = mFirst[p.index], end = mFirst[p.index + 1]; i < end;) {
         const uint32_t chainIndex = mFeatures[mReaches[i].feature].chain;
-        const Chain& chain = mChains[chainIndex];
-        Foot foot{0, chain.reach, {}};
+        Foot foot{0, mChains[chainIndex].reach, {}};
         const Reach* nearest = nullptr;
         for (; i < end && mFeatures[mReaches[i].feature].chain == chainIndex; ++i)
             if (findFoot(mFeatures[mReaches[i].feature], at, foot)) nearest = &mReaches[i];
         if (!nearest) continue;
         const Feature& f = mFeatures[nearest->feature];
-        const double sigma = f.sigma[0] + foot.t * (f.sigma[1] - f.sigma[0]);
+        const double sigma = f.sigmaAt(foot.t);
         if (sigma <= 0 || foot.distance >= kBlurReach * sigma) continue;
-        const double arc = f.arcAt(foot.t);
-        double weight = blurShare(foot.distance / sigma);
-        weight *= blurFade(
-            std::min(chain.fadesAtBegin ? arc : HUGE_VAL, chain.fadesAtEnd ? chain.length - arc : HUGE_VAL),
-            sigma);
+        const double weight = blurShare(foot.distance / sigma) * fade(f, foot.t, sigma);
         if (weight <= 0) continue;
         const int own = sideOf(f, *nearest, p, at, foot);
         const BlurTerm term{float(weight), f.patches[size_t(own)], f.patches[size_t(1 - own)],

@@ -33,12 +33,17 @@ class EdgeBlur {
     // Whether any point of the patch may have terms.
     bool inReach(PatchId p) const { return !mFirst.empty() && mFirst[p.index] != mFirst[p.index + 1]; }
 
+    // How much of the jump across an edge is blurred on the edge itself, at parameter t of its curve: 1 but
+    // near a free tip or a junction; 0 where the edge has no blur.
+    double strength(EdgeId e, double t) const;
+
     // The terms at image point `at` of patch p, in an order that depends on nothing else; returns how many.
     // Where more than kMaxBlurTerms chains are near, those of the largest weights. Thread-safe.
     int terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms>& out) const;
 
   private:
     static constexpr int kSegments = 8;
+    static constexpr uint32_t kNone = 0xffffffff;
     struct Box {
         glm::dvec2 lo, hi;
     };
@@ -56,6 +61,7 @@ class EdgeBlur {
         std::array<double, kSegments + 1> arc{};      // px along the chain
         double flatness = 0;                          // the curve's distance from the chords, at most
 
+        double sigmaAt(double t) const { return sigma[0] + t * (sigma[1] - sigma[0]); }
         double arcAt(double t) const;
         glm::vec2 domainAt(int side, double t) const;
     };
@@ -75,6 +81,7 @@ class EdgeBlur {
         glm::dvec2 point{0};
     };
 
+    double fade(const Feature& feature, double t, double sigma) const;
     void collectChains(const PatchMesh& mesh, double sharpen);
     void addChain(const PatchMesh& mesh, const std::vector<HalfedgeId>& run, bool closed, double sharpen,
                   const std::vector<uint8_t>& featuresAt);
@@ -85,8 +92,9 @@ class EdgeBlur {
 
     std::vector<Feature> mFeatures;  // chain after chain
     std::vector<Chain> mChains;
-    std::vector<uint32_t> mFirst;  // by patch id, into mReaches; empty where nothing is blurred
-    std::vector<Reach> mReaches;   // of each patch in the order of mFeatures
+    std::vector<uint32_t> mFeatureOf;  // by edge id; kNone where the edge is no feature
+    std::vector<uint32_t> mFirst;      // by patch id, into mReaches; empty where nothing is blurred
+    std::vector<Reach> mReaches;       // of each patch in the order of mFeatures
 };
 
 // The colour of patch p in the mesh's basis at parameters `at`, whose image point is `point`: what renderers
