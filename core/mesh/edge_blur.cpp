@@ -27,15 +27,13 @@ HalfedgeId successor(const PatchMesh& mesh, HalfedgeId h, const std::vector<uint
     return next;
 }
 
-double squaredDistance(glm::dvec2 lo, glm::dvec2 hi, glm::dvec2 p) {
-    const glm::dvec2 d = glm::max(glm::max(lo - p, p - hi), glm::dvec2(0));
-    return glm::dot(d, d);
-}
-
 glm::dvec2 unit(glm::dvec2 v) {
     const double length = glm::length(v);
     return length > 0 ? v / length : v;
 }
+
+// How far the parameter of a foot on an even curve can be from its share of the base.
+constexpr double kEvenSpan = .3;
 
 // Newton's method on (B(t) - at) . B'(t) = 0, inside [lo, hi].
 double refined(const BezierCurve& curve, glm::dvec2 at, double t, double lo, double hi) {
@@ -44,7 +42,7 @@ double refined(const BezierCurve& curve, glm::dvec2 at, double t, double lo, dou
     const glm::dvec2 c1 = 3.0 * (p[1] - p[0]), c2 = 3.0 * (p[2] - 2.0 * p[1] + p[0]),
                      c3 = p[3] - 3.0 * (p[2] - p[1]) - p[0], c0 = p[0] - at;
     constexpr int kSteps = 5;
-    constexpr double kEnough = 1e-9;
+    constexpr double kEnough = 1e-4;  // the error left is about its square
     for (int i = 0; i < kSteps; ++i) {
         const glm::dvec2 r = c0 + t * (c1 + t * (c2 + t * c3)), d = c1 + t * (2.0 * c2 + 3.0 * t * c3),
                          d2 = 2.0 * c2 + 6.0 * t * c3;
@@ -140,15 +138,21 @@ void EdgeBlur::addChain(const PatchMesh& mesh, const std::vector<HalfedgeId>& ru
             const auto sides = c.sides(f.patches[k]);
             f.sides[k] = uint8_t(std::find(sides.begin(), sides.end(), beside[k]) - sides.begin());
         }
-        for (size_t i = 0; i <= kSegments; ++i) {
-            f.chord[i] = f.curve.at(double(i) / kSegments);
-            if (i > 0) chain.length += glm::distance(f.chord[i - 1], f.chord[i]);
-            f.arc[i] = chain.length;
+        f.arc[0] = chain.length;
+        for (size_t i = 0; i < kSegments; ++i) {
+            f.chords[i] = {f.curve.at(double(i) / kSegments), f.curve.at(double(i + 1) / kSegments)};
+            f.arc[i + 1] = chain.length += glm::length(f.chords[i].along);
         }
         // |B''| / 8 times the square of the step.
         f.flatness = .75 *
                      std::max(glm::length(p[0] - 2.0 * p[1] + p[2]), glm::length(p[1] - 2.0 * p[2] + p[3])) /
                      (kSegments * kSegments);
+        f.base = {p[0], p[3]};
+        f.bend = std::sqrt(std::max(f.base.nearest(p[1]).second, f.base.nearest(p[2]).second));
+        const auto third = straightCurve(p[0], p[3]).p;
+        constexpr double kEven = .1;
+        f.even = std::max(glm::distance(p[1], third[1]), glm::distance(p[2], third[2])) <
+                 kEven * glm::length(f.base.along);
         chain.reach = std::max(chain.reach, kBlurReach * std::max(f.sigma[0], f.sigma[1]));
         mFeatureOf[HalfedgeMesh::edge(h).index] = uint32_t(mFeatures.size());
         mFeatures.push_back(f);
@@ -226,34 +230,45 @@ void EdgeBlur::collectReaches(const PatchMesh& mesh) {
     for (const auto& [p, r] : found) mReaches[next[p.index]++] = r;
 }
 
+EdgeBlur::Segment::Segment(glm::dvec2 a, glm::dvec2 b) : from(a), along(b - a) {
+    const double squared = glm::dot(along, along);
+    inverse = squared > 0 ? 1 / squared : 0;
+}
+
+std::pair<double, double> EdgeBlur::Segment::nearest(glm::dvec2 at) const {
+    const glm::dvec2 to = at - from;
+    const double s = std::clamp(glm::dot(to, along) * inverse, 0.0, 1.0);
+    const glm::dvec2 off = to - s * along;
+    return {s, glm::dot(off, off)};
+}
+
 // Whether the feature has a point nearer than foot.distance; then that is the new foot.
 bool EdgeBlur::findFoot(const Feature& f, glm::dvec2 at, Foot& foot) {
-    if (squaredDistance(f.box.lo, f.box.hi, at) >= foot.distance * foot.distance) return false;
-    double best = HUGE_VAL, t = 0;
-    for (size_t i = 0; i < kSegments; ++i) {
-        const glm::dvec2 along = f.chord[i + 1] - f.chord[i], to = at - f.chord[i];
-        const double squared = glm::dot(along, along);
-        const double s = squared > 0 ? std::clamp(glm::dot(to, along) / squared, 0.0, 1.0) : 0;
-        const glm::dvec2 off = to - s * along;
-        const double distance = glm::dot(off, off);
-        if (distance < best) {
-            best = distance;
+    const auto square = [](double x) { return x * x; };
+    const auto [share, fromBase] = f.base.nearest(at);
+    if (fromBase >= square(foot.distance + f.bend)) return false;
+    double t = share;
+    if (!f.even) {
+        double best = HUGE_VAL;
+        for (size_t i = 0; i < kSegments; ++i) {
+            const auto [s, squared] = f.chords[i].nearest(at);
+            if (squared >= best) continue;
+            best = squared;
             t = (double(i) + s) / kSegments;
         }
+        if (best >= square(foot.distance + f.flatness)) return false;
     }
-    if (std::sqrt(best) - f.flatness >= foot.distance) return false;
-    constexpr double kSpan = 1.0 / kSegments;
-    const double newton = refined(f.curve, at, t, std::max(0.0, t - kSpan), std::min(1.0, t + kSpan));
-    bool nearer = false;
-    for (const double candidate : {newton, t}) {
+    const double span = f.even ? kEvenSpan : 1.0 / kSegments;
+    for (const double candidate :
+         {refined(f.curve, at, t, std::max(0.0, t - span), std::min(1.0, t + span)), t}) {
         const glm::dvec2 point = f.curve.at(candidate);
         const double distance = glm::distance(point, at);
         if (distance < foot.distance) {
             foot = {candidate, distance, point};
-            nearer = true;
+            return true;
         }
     }
-    return nearer;
+    return false;
 }
 
 double EdgeBlur::fade(const Feature& f, double t, double sigma) const {
@@ -280,6 +295,29 @@ int EdgeBlur::sideOf(const Feature& f, const Reach& reach, PatchId p, glm::dvec2
                                : foot.t >= 1 ? f.endTangents[1]
                                              : f.curve.derivative(foot.t);
     return cross(tangent, at - foot.point) > 0 ? 0 : 1;
+}
+
+void EdgeBlur::findNear(PatchId p, glm::dvec2 origin, const float* x, const float* y, size_t count,
+                        float* excess) const {
+    std::fill_n(excess, count, 1.F);
+    if (!inReach(p)) return;
+    for (size_t k = mFirst[p.index]; k < mFirst[p.index + 1]; ++k) {
+        const Feature& f = mFeatures[mReaches[k].feature];
+        constexpr double kSlack = .01;  // px, more than the rounding of single precision
+        const double limit = mChains[f.chain].reach + f.bend + kSlack;
+        const auto fromX = float(f.base.from.x - origin.x), fromY = float(f.base.from.y - origin.y);
+        const auto alongX = float(f.base.along.x), alongY = float(f.base.along.y),
+                   inverse = float(f.base.inverse), limit2 = float(limit * limit);
+        for (size_t i = 0; i < count; ++i) {
+            const float dx = x[i] - fromX, dy = y[i] - fromY;
+            float s = (dx * alongX + dy * alongY) * inverse;
+            s = s < 0 ? 0 : s;
+            s = s > 1 ? 1 : s;
+            const float offX = dx - s * alongX, offY = dy - s * alongY;
+            const float beyond = offX * offX + offY * offY - limit2;
+            excess[i] = beyond < excess[i] ? beyond : excess[i];
+        }
+    }
 }
 
 int EdgeBlur::terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms>& out) const {
@@ -335,20 +373,30 @@ void addBlur(const PatchMesh& mesh, const EdgeBlur& blur, PatchId p, std::span<c
         glm::vec2 at;
     };
     std::vector<Share> shares;
-    std::array<BlurTerm, kMaxBlurTerms> terms;
-    for (uint32_t i = 0; i < points.size(); ++i) {
-        const int count = blur.terms(p, points[i], terms);
-        for (int k = 0; k < count; ++k) {
-            const BlurTerm& t = terms[size_t(k)];
-            shares.push_back({t.other, i, t.weight, t.otherAt});
-            shares.push_back({t.own, i, -t.weight, t.ownAt});
+    constexpr size_t kBatch = 256;
+    float x[kBatch], y[kBatch], value[kMaxChannels][kBatch];
+    for (size_t first = 0; first < points.size(); first += kBatch) {
+        const size_t n = std::min(kBatch, points.size() - first);
+        float* const excess = value[0];
+        for (size_t i = 0; i < n; ++i) {
+            x[i] = float(points[first + i].x - points[first].x);
+            y[i] = float(points[first + i].y - points[first].y);
+        }
+        blur.findNear(p, points[first], x, y, n, excess);
+        for (size_t i = 0; i < n; ++i) {
+            if (excess[i] >= 0) continue;
+            std::array<BlurTerm, kMaxBlurTerms> terms;
+            const int count = blur.terms(p, points[first + i], terms);
+            for (int k = 0; k < count; ++k) {
+                const BlurTerm& t = terms[size_t(k)];
+                shares.push_back({t.other, uint32_t(first + i), t.weight, t.otherAt});
+                shares.push_back({t.own, uint32_t(first + i), -t.weight, t.ownAt});
+            }
         }
     }
     // Patch by patch, for the vector code; a point's shares keep their order.
     std::stable_sort(shares.begin(), shares.end(),
                      [](const Share& a, const Share& b) { return a.patch < b.patch; });
-    constexpr size_t kBatch = 256;
-    float x[kBatch], y[kBatch], value[kMaxChannels][kBatch];
     float* out[kMaxChannels];
     for (int c = 0; c < kMaxChannels; ++c) out[c] = value[c];
     for (size_t i = 0; i < shares.size();) {

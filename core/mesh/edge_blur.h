@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/mesh/blur_profile.h"
@@ -41,25 +42,42 @@ class EdgeBlur {
     // Where more than kMaxBlurTerms chains are near, those of the largest weights. Thread-safe.
     int terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms>& out) const;
 
+    // Sets excess[i] below 0 wherever the point origin + (x[i], y[i]) of patch p may have terms: a quick test
+    // for many points, wrong on the safe side.
+    void findNear(PatchId p, glm::dvec2 origin, const float* x, const float* y, size_t count,
+                  float* excess) const;
+
   private:
     static constexpr int kSegments = 8;
     static constexpr uint32_t kNone = 0xffffffff;
     struct Box {
         glm::dvec2 lo, hi;
     };
+    struct Segment {
+        glm::dvec2 from{0}, along{0};
+        double inverse = 0;  // 1 / |along|^2; 0 for a point
+
+        Segment() = default;
+        Segment(glm::dvec2 a, glm::dvec2 b);
+        // The nearest point's share of `along`, and the square of its distance.
+        std::pair<double, double> nearest(glm::dvec2 at) const;
+    };
     // A feature edge, in the direction of its chain.
     struct Feature {
         HalfedgeId halfedge;
         uint32_t chain = 0;
         BezierCurve curve;
-        Box box;                                      // of the curve
-        std::array<double, 2> sigma{};                // px, sharpen included, at both ends
-        std::array<glm::dvec2, 2> endTangents{};      // the chain's, where two edges meet the mean of theirs
-        std::array<PatchId, 2> patches;               // left, where cross(tangent, to the point) > 0; right
-        std::array<uint8_t, 2> sides{};               // which side of the patch the edge is
-        std::array<glm::dvec2, kSegments + 1> chord;  // points at t = i / kSegments
-        std::array<double, kSegments + 1> arc{};      // px along the chain
-        double flatness = 0;                          // the curve's distance from the chords, at most
+        Box box;                                  // of the curve
+        std::array<double, 2> sigma{};            // px, sharpen included, at both ends
+        std::array<glm::dvec2, 2> endTangents{};  // the chain's, where two edges meet the mean of theirs
+        std::array<PatchId, 2> patches;           // left, where cross(tangent, to the point) > 0; right
+        std::array<uint8_t, 2> sides{};           // which side of the patch the edge is
+        Segment base;                             // from end to end
+        double bend = 0;                          // the curve's distance from the base, at most
+        bool even = false;                        // t is nearly the share of the base
+        std::array<Segment, kSegments> chords;    // between the points at t = i / kSegments
+        std::array<double, kSegments + 1> arc{};  // px along the chain
+        double flatness = 0;                      // its distance from the chords, at most
 
         double sigmaAt(double t) const { return sigma[0] + t * (sigma[1] - sigma[0]); }
         double arcAt(double t) const;
