@@ -259,16 +259,16 @@ bool EdgeBlur::findFoot(const Feature& f, glm::dvec2 at, Foot& foot) {
         if (best >= square(foot.distance + f.flatness)) return false;
     }
     const double span = f.even ? kEvenSpan : 1.0 / kSegments;
+    bool nearer = false;  // The start, too: Newton's method may leave for a worse place.
     for (const double candidate :
          {refined(f.curve, at, t, std::max(0.0, t - span), std::min(1.0, t + span)), t}) {
         const glm::dvec2 point = f.curve.at(candidate);
         const double distance = glm::distance(point, at);
-        if (distance < foot.distance) {
-            foot = {candidate, distance, point};
-            return true;
-        }
+        if (distance >= foot.distance) continue;
+        foot = {candidate, distance, point};
+        nearer = true;
     }
-    return false;
+    return nearer;
 }
 
 double EdgeBlur::fade(const Feature& f, double t, double sigma) const {
