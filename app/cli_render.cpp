@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kMaxOutputPixels = 400e6;
 constexpr double kMinScale = 1e-6, kMaxScale = 1e6;
+constexpr double kMaxSharpen = 4;
 
 struct Arguments {
     std::string input;
@@ -24,6 +25,7 @@ struct Arguments {
     int width = 0;
     int height = 0;
     int samples = 1;
+    double sharpen = 1;
     bool reference = false;
     bool quiet = false;
 };
@@ -42,6 +44,8 @@ int run(const Arguments& arguments) {
     if (const auto format = pictureFormatFor(arguments.output); !format) return report(format.error());
     if (!(arguments.scale >= kMinScale && arguments.scale <= kMaxScale))  // CLI11's range lets NaN through
         return report({ErrorCode::Usage, "--scale is a number from 1e-6 to 1e6"});
+    if (!(arguments.sharpen >= 0 && arguments.sharpen <= kMaxSharpen))
+        return report({ErrorCode::Usage, "--sharpen is a number from 0 to 4"});
     if (arguments.reference && arguments.samples != 1)
         return report({ErrorCode::Usage, "--reference takes one sample a pixel: leave --samples out"});
     if (const auto writable = checkWritable(arguments.output); !writable) return report(writable.error());
@@ -56,9 +60,10 @@ int run(const Arguments& arguments) {
     Progress progress(stop.token(),
                       [&](std::string_view stage, double, double total) { display.show(stage, total); });
     progress.beginStage("render", 1);
-    const Result<Image> image = arguments.reference
-                                    ? Result<Image>(rasterizeReference(document->mesh, *view))
-                                    : rasterize(document->mesh, *view, {arguments.samples}, &progress);
+    const PatchMesh& mesh = document->mesh;
+    const Result<Image> image =
+        arguments.reference ? Result<Image>(rasterizeReference(mesh, *view, arguments.sharpen))
+                            : rasterize(mesh, *view, {arguments.samples, arguments.sharpen}, &progress);
     display.clear();
     if (!image) return report(image.error());
     const auto written = stop.whileWriting([&] { return writeImage(*image, arguments.output); });
@@ -86,6 +91,11 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
     width->excludes(height);
     command->add_option("--samples", arguments->samples, "Samples a pixel, averaged")
         ->check(CLI::IsMember({1, 4, 16}))
+        ->capture_default_str();
+    command
+        ->add_option("--sharpen", arguments->sharpen,
+                     "Factor on the blur of soft edges: 0 draws them hard, 1 as they are, more softer")
+        ->check(CLI::Range(0.0, kMaxSharpen))
         ->capture_default_str();
     command->add_flag("--reference", arguments->reference,
                       "Use the slow renderer that the fast one is tested against");

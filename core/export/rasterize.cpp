@@ -2,6 +2,7 @@
 #include "core/export/rasterize.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -10,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/export/patch_inverse.h"
 #include "core/export/scan_conversion.h"
+#include "core/mesh/edge_blur.h"
 
 namespace tessera {
 
@@ -113,8 +115,20 @@ inline void copyRun(const float* from, size_t n, float* to) {
     }
 }
 
+// Adds what blurred features do to the colours of a batch.
+void blurBatch(const PatchMesh& mesh, const EdgeBlur& blur, const PixelGrid& grid, const Batch& batch,
+               float* const* colours) {
+    std::array<glm::dvec2, Batch::kSize> points;
+    size_t i = 0;
+    for (const PixelRun& run : batch.runs)
+        for (int column = run.begin; column < run.end; ++column)
+            points[i++] = {grid.centreX(column), grid.centreY(run.row)};
+    addBlur(mesh, blur, batch.patch, {points.data(), batch.count}, colours);
+}
+
 // Evaluates a batch's colours and writes them into `image`, whose pixel (0, 0) is the view's (x0, y0).
-void shade(const PatchMesh& mesh, const Batch& batch, Image& image, int x0, int y0) {
+void shade(const PatchMesh& mesh, const EdgeBlur& blur, const PixelGrid& grid, const Batch& batch,
+           Image& image, int x0, int y0) {
     alignas(32) float x[Batch::kSize], y[Batch::kSize], colour[kMaxChannels][Batch::kSize];
     for (size_t i = 0; i < batch.count; ++i) {
         x[i] = batch.v[i] + .5f * batch.w[i];
@@ -123,6 +137,8 @@ void shade(const PatchMesh& mesh, const Batch& batch, Image& image, int x0, int 
     float* out[kMaxChannels];
     for (int c = 0; c < kMaxChannels; ++c) out[c] = colour[c];
     evaluateSplines(mesh.spline(batch.patch), mesh.channels(), x, y, batch.count, out);
+    if (blur.inReach(batch.patch)) blurBatch(mesh, blur, grid, batch, out);
+    toWorking(mesh.colourBasis(), out, batch.count);
     for (int c = 0; c < mesh.channels(); ++c) {
         const float* from = colour[c];
         float* plane = image.plane(c).data();
@@ -169,6 +185,7 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
     fine.width *= n;
     fine.height *= n;
     const ScanConversion scan(mesh, fine);
+    const EdgeBlur blur(mesh, options.sharpen);
     const std::vector<Tile> tiles = makeTiles(scan, kTileWidth * n, kTileHeight * n);
     std::atomic<size_t> done{0};
     std::atomic<bool> stop{false};
@@ -178,11 +195,12 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
             const PixelRect& rect = tiles[i].rect;
             if (n == 1) {
                 processTile(mesh, scan, tiles[i], batch,
-                            [&](const Batch& b) { shade(mesh, b, image, 0, 0); });
+                            [&](const Batch& b) { shade(mesh, blur, scan.grid(), b, image, 0, 0); });
             } else {
                 Image part(rect.x1 - rect.x0, rect.y1 - rect.y0, mesh.channels());
-                processTile(mesh, scan, tiles[i], batch,
-                            [&](const Batch& b) { shade(mesh, b, part, rect.x0, rect.y0); });
+                processTile(mesh, scan, tiles[i], batch, [&](const Batch& b) {
+                    shade(mesh, blur, scan.grid(), b, part, rect.x0, rect.y0);
+                });
                 average(part, n, image, rect.x0 / n, rect.y0 / n);
             }
             const double fraction = double(++done) / double(tiles.size());

@@ -31,7 +31,8 @@ struct PixelOwner {
 };
 
 struct RasterizeOptions {
-    int samples = 1;  // per pixel: 1 (its centre), 4 or 16 (a regular grid, averaged)
+    int samples = 1;     // per pixel: 1 (its centre), 4 or 16 (a regular grid, averaged)
+    double sharpen = 1;  // multiplies the blur of every feature; 0 draws hard features
 };
 
 // (a) Section 5 as it stands: every patch is subdivided 4-way until a piece's bounding box is smaller than an
@@ -39,7 +40,7 @@ struct RasterizeOptions {
 // then its colour by one evaluation of the spline. Slow and plain: the reference. Pixels that no piece covers
 // stay 0: up to one in ten thousand falls into a crack between neighbouring pieces that were cut to different
 // depths, also within a patch.
-Image rasterizeReference(const PatchMesh& mesh, const View& view);
+Image rasterizeReference(const PatchMesh& mesh, const View& view, double sharpen = 1);
 std::vector<PixelOwner> locatePixelsReference(const PatchMesh& mesh, const View& view);
 
 // (b) The fast path: each edge's curve meets the rows of pixel centres once, and both patches beside it use

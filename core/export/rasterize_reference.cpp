@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/export/rasterize.h"
+#include "core/mesh/edge_blur.h"
 
 namespace tessera {
 
@@ -22,9 +23,9 @@ struct Target {
     std::vector<PixelOwner>& owners;
 };
 
-// Vertices of a vectorized picture often lie on pixel centres, which several patches then share. As with the fast
-// path's edge rule, a centre on a side belongs to the patch right of it, on a level side or a vertex to that
-// just below.
+// Vertices of a vectorized picture often lie on pixel centres, which several patches then share. As with the
+// fast path's edge rule, a centre on a side belongs to the patch right of it, on a level side or a vertex to
+// that just below.
 constexpr glm::dvec2 kTieBreak(1e-10, 1e-7);
 
 // The second stage: pixel centres in the triangle of the piece's corners, bounds included. Where two pieces
@@ -52,8 +53,9 @@ void fillTriangle(const Piece& piece, PatchId patch, Target& target) {
         }
 }
 
-// Section 5 asks for pieces smaller than a pixel. Their chords leave cracks where neighbours are cut to different
-// depths, a few pixel centres in ten thousand on a photograph; at a quarter of a pixel, a sixteenth of that.
+// Section 5 asks for pieces smaller than a pixel. Their chords leave cracks where neighbours are cut to
+// different depths, a few pixel centres in ten thousand on a photograph; at a quarter of a pixel, a sixteenth
+// of that.
 constexpr double kPieceSize = .25;
 
 // The first stage: down to pieces whose bounding box (that of the control points, which holds the piece) is
@@ -90,7 +92,8 @@ std::vector<PixelOwner> locatePixelsReference(const PatchMesh& mesh, const View&
     return owners;
 }
 
-Image rasterizeReference(const PatchMesh& mesh, const View& view) {
+Image rasterizeReference(const PatchMesh& mesh, const View& view, double sharpen) {
+    const EdgeBlur blur(mesh, sharpen);
     const std::vector<PixelOwner> owners = locatePixelsReference(mesh, view);
     Image image(view.width, view.height, mesh.channels());
     for (int y = 0; y < view.height; ++y)
@@ -98,10 +101,13 @@ Image rasterizeReference(const PatchMesh& mesh, const View& view) {
             const PixelOwner& owner = owners[size_t(y) * size_t(view.width) + size_t(x)];
             if (!owner.patch.valid()) continue;
             const double v = double(owner.v), w = double(owner.w);
-            const glm::dvec2 at = domainPoint({1 - v - w, v, w});
-            for (int c = 0; c < mesh.channels(); ++c)
-                image.at(x, y, c) = float(evaluateSpline(mesh.spline(owner.patch), c, at));
+            double colour[kMaxChannels];
+            blurredColour(mesh, blur, owner.patch, {1 - v - w, v, w},
+                          view.origin + glm::dvec2(x + .5, y + .5) / view.scale, colour);
+            for (int c = 0; c < mesh.channels(); ++c) image.at(x, y, c) = float(colour[c]);
         }
+    float* const planes[] = {image.plane(0).data(), image.plane(1).data(), image.plane(2).data()};
+    toWorking(mesh.colourBasis(), planes, image.plane(0).size());
     return image;
 }
 

@@ -2,6 +2,7 @@
 #include "core/mesh/mesh_validate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -123,6 +124,45 @@ void checkSmoothJoins(const PatchMesh& mesh, Findings& findings) {
         }
         if (!sound) findings.add(name("smooth join at vertex", join.vertex.index) + " is not smooth");
     }
+}
+
+// Parameters of the point at s along a side of its patch.
+Barycentric onSide(const PatchMesh& mesh, HalfedgeId side, double s) {
+    const HalfedgeMesh& c = mesh.connectivity();
+    const auto sides = c.sides(c.face(side));
+    const auto k = int(std::find(sides.begin(), sides.end(), side) - sides.begin());
+    Barycentric b(0);
+    b[k] = 1 - s;
+    b[(k + 1) % 3] = s;
+    return b;
+}
+
+// The largest difference, over the channels, between the jump across the middle of a blurred edge and the
+// jump that should be left there.
+double wrongJump(const PatchMesh& mesh, const EdgeBlur& blur, const ColourOf& colour, EdgeId e) {
+    const HalfedgeId sides[] = {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))};
+    const BezierCurve curve = toPixels(mesh.controlPoints(sides[0]));
+    const glm::dvec2 middle = curve.at(.5), along = curve.derivative(.5);
+    const double speed = glm::length(along);
+    if (speed <= 0) return 0;
+    constexpr double kHair = 1e-5;  // px; the colours of the patches themselves are taken on the curve
+    const glm::dvec2 hair = kHair / speed * glm::dvec2(-along.y, along.x);
+    double own[2][kMaxChannels], shown[2][kMaxChannels];
+    for (size_t k = 0; k < 2; ++k) {
+        const PatchId p = mesh.connectivity().face(sides[k]);
+        const Barycentric at = onSide(mesh, sides[k], .5);
+        const glm::dvec2 point = k == 0 ? middle + hair : middle - hair;
+        std::array<BlurTerm, kMaxBlurTerms> terms;
+        if (blur.terms(p, point, terms) > 1) return 0;
+        for (int c = 0; c < mesh.channels(); ++c)
+            own[k][c] = evaluateSpline(mesh.spline(p), c, domainPoint(at));
+        colour(p, at, point, shown[k]);
+    }
+    const double left = 1 - blur.strength(e, .5);
+    double worst = 0;
+    for (int c = 0; c < mesh.channels(); ++c)
+        worst = std::max(worst, std::abs(shown[0][c] - shown[1][c] - left * (own[0][c] - own[1][c])));
+    return worst;
 }
 
 // A side as a fine polyline, the same from both of its patches.
@@ -248,6 +288,30 @@ std::vector<std::string> connectivityViolations(const HalfedgeMesh& mesh) {
     return found;
 }
 
+std::vector<std::string> blurViolations(const PatchMesh& mesh, const EdgeBlur& blur, const ColourOf& colour) {
+    std::vector<std::string> found;
+    mesh.forEachEdge([&](EdgeId e) {
+        const EdgeCurve& curve = mesh.curve(e);
+        const auto& [s0, s1] = curve.blurSigma;
+        if (!std::isfinite(s0) || !std::isfinite(s1) || s0 < 0 || s1 < 0)
+            found.push_back(name("edge", e.index) + " has a blur that is negative or not finite");
+        else if (!curve.feature && (s0 > 0 || s1 > 0))
+            found.push_back(name("edge", e.index) + " has a blur and is no feature");
+    });
+    if (!found.empty()) return found;
+    mesh.forEachEdge([&](EdgeId e) {
+        // Beside a thinner blur a hair's breadth counts.
+        constexpr float kThinnest = .05F;
+        const EdgeCurve& curve = mesh.curve(e);
+        if (!curve.feature || mesh.connectivity().onBorder(e)) return;
+        if (curve.blurSigma[0] + curve.blurSigma[1] < 2 * kThinnest) return;
+        constexpr double kTolerance = 1e-3;
+        if (!(wrongJump(mesh, blur, colour, e) <= kTolerance))
+            found.push_back(name("edge", e.index) + " has a blur that leaves a jump of colour");
+    });
+    return found;
+}
+
 MeshValidation validate(const PatchMesh& mesh) {
     MeshValidation result;
     Findings findings(result);
@@ -257,6 +321,11 @@ MeshValidation validate(const PatchMesh& mesh) {
     checkBorder(mesh, findings);
     checkSplines(mesh, findings);
     checkSmoothJoins(mesh, findings);
+    const EdgeBlur blur(mesh);
+    const auto colour = [&](PatchId p, const Barycentric& at, glm::dvec2 point, double* out) {
+        blurredColour(mesh, blur, p, at, point, out);
+    };
+    for (const std::string& violation : blurViolations(mesh, blur, colour)) findings.add(violation);
     mesh.forEachEdge([&](EdgeId e) {
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
         auto back = mesh.controlPoints(HalfedgeMesh::twin(h));
@@ -295,29 +364,31 @@ MeshValidation validate(const PatchMesh& mesh) {
 }
 
 SeamStatistics measureSeams(const PatchMesh& mesh) {
-    constexpr int kSamples = 16;
+    constexpr int kIntervals = 16;
     std::vector<std::pair<double, double>> differences;  // level, length
     double sum = 0, length = 0;
     const HalfedgeMesh& c = mesh.connectivity();
+    const EdgeBlur blur(mesh);
     mesh.forEachEdge([&](EdgeId e) {
         if (mesh.curve(e).feature || c.onBorder(e)) return;
         const HalfedgeId h = HalfedgeMesh::halfedge(e), t = HalfedgeMesh::twin(h);
-        const auto at = [&](HalfedgeId side,
-                            double s) {  // domain point of the side's patch, s along the side
-            const auto sides = c.sides(c.face(side));
-            const auto k = int(std::find(sides.begin(), sides.end(), side) - sides.begin());
-            Barycentric b(0);
-            b[k] = 1 - s;
-            b[(k + 1) % 3] = s;
-            return domainPoint(b);
-        };
-        const double weight = toPixels(mesh.controlPoints(h)).length() / kSamples;
-        for (int i = 0; i < kSamples; ++i) {
-            const double s = (i + .5) / kSamples;
+        const BezierCurve curve = toPixels(mesh.controlPoints(h));
+        const double interval = curve.length() / kIntervals;
+        for (int i = 0; i <= kIntervals; ++i) {
+            const double s = double(i) / kIntervals;
+            const double weight = i == 0 || i == kIntervals ? interval / 2 : interval;
+            double one[kMaxChannels], other[kMaxChannels];
+            blurredColour(mesh, blur, c.face(h), onSide(mesh, h, s), curve.at(s), one);
+            blurredColour(mesh, blur, c.face(t), onSide(mesh, t, 1 - s), curve.at(s), other);
+            float apart[kMaxChannels];
+            float* planes[kMaxChannels];
+            for (int k = 0; k < mesh.channels(); ++k) {
+                apart[k] = float(one[k] - other[k]);
+                planes[k] = &apart[k];
+            }
+            toWorking(mesh.colourBasis(), planes, 1);
             double difference = 0;
-            for (int channel = 0; channel < mesh.channels(); ++channel)
-                difference += std::abs(evaluateSpline(mesh.spline(c.face(h)), channel, at(h, s)) -
-                                       evaluateSpline(mesh.spline(c.face(t)), channel, at(t, 1 - s)));
+            for (int k = 0; k < mesh.channels(); ++k) difference += std::abs(double(apart[k]));
             difference *= 255.0 / mesh.channels();
             differences.emplace_back(difference, weight);
             sum += weight * difference;

@@ -3,9 +3,11 @@
 // every point as often as its degree says, and the degree is the patches' area over the picture's.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "core/mesh/edge_blur.h"
 #include "core/mesh/patch_mesh.h"
 
 namespace tessera {
@@ -25,15 +27,24 @@ struct MeshValidation {
 constexpr size_t kMaxViolations = 100;
 
 // Checks connectivity, the border (corners and straight sides of the picture), orientation, that the two
-// sides of each edge have the same curve, each patch's certificate, the sum of areas, the splines' sizes and
-// finiteness, the smooth joins, and which patches cover each pixel centre.
+// sides of each edge have the same curve, the features' blur, each patch's certificate, the sum of areas, the
+// splines' sizes and finiteness, the smooth joins, and which patches cover each pixel centre.
 MeshValidation validate(const PatchMesh& mesh);
 
 // The connectivity alone: empty where it is sound, else what is wrong.
 std::vector<std::string> connectivityViolations(const HalfedgeMesh& mesh);
 
-// Mean |difference| of the two sides' colours along non-feature edges inside the picture, weighted by length;
-// in levels of 1/255, all channels together. p95 is the 95th percentile.
+// The colour of a patch at parameters with their image point, as of blurredColour.
+using ColourOf = std::function<void(PatchId, const Barycentric&, glm::dvec2 point, double* out)>;
+
+// What is wrong with blurs: empty where each blurSigma is finite, not negative, and 0 where the edge is no
+// feature, and where `colour` has beside the middle of each blurred edge no jump but that which the blur
+// leaves near tips and junctions, within 1e-3. (No verdict where another feature's blur reaches that middle.)
+std::vector<std::string> blurViolations(const PatchMesh& mesh, const EdgeBlur& blur, const ColourOf& colour);
+
+// Mean |difference| of the two sides' colours, blur included, along non-feature edges inside the picture with
+// their ends, weighted by length; in levels of 1/255 of the working space, all channels together. p95 is the
+// 95th percentile.
 struct SeamStatistics {
     double mean = 0;
     double p95 = 0;

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/export/rasterize.h"
+#include "core/mesh/edge_blur.h"
 #include "tests/support/test_meshes.h"
 
 namespace tessera {
@@ -74,10 +75,32 @@ void benchRenderers() {
         });
 }
 
+void benchBlur() {
+    PatchMesh mesh = testing::curvedMesh(768, 512, 39, 26, 7);
+    size_t features = 0;
+    mesh.forEachEdge([&](EdgeId e) {
+        EdgeCurve curve = mesh.curve(e);
+        if (curve.feature) curve.blurSigma = {.8f, .8f};
+        features += curve.feature;
+        mesh.setCurve(e, curve);
+    });
+    const View view = wholePicture(mesh, {1, 1});
+    std::printf("the same with a blur of .8 px on %zu features, one thread, milliseconds:\n", features);
+    withThreads(1, [&] {
+        const auto report = [](const char* what, double ms) { std::printf("  %-44s %8.2f\n", what, ms); };
+        report("index of the features", shortest(50, [&] { (void)EdgeBlur(mesh); }));
+        report("fast, hard", shortest(50, [&] { (void)rasterize(mesh, view, {.sharpen = 0}); }));
+        report("fast, blurred", shortest(50, [&] { (void)rasterize(mesh, view); }));
+        report("fast, blurred 4 times as much",
+               shortest(20, [&] { (void)rasterize(mesh, view, {.sharpen = 4}); }));
+    });
+}
+
 }  // namespace
 }  // namespace tessera
 
 int main() {
     tessera::benchSplines();
     tessera::benchRenderers();
+    tessera::benchBlur();
 }

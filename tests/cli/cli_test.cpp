@@ -130,6 +130,9 @@ TEST_F(Cli, RefusesWrongUsage) {
                 "magic");
     expectError(run({"render", path("a.tessera"), "-o", path("b.gif")}), 2, "gif");
     expectError(run({"render", path("a.tessera"), "-o", path("b.png"), "--samples", "3"}), 2, "samples");
+    for (const char* sharpen : {"4.1", "-1", "nan", "soft"})
+        expectError(run({"render", path("a.tessera"), "-o", path("b.png"), "--sharpen", sharpen}), 2,
+                    "sharpen");
     expectError(run({"render", path("a.tessera"), "-o", path("b.png"), "--width", "9", "--height", "9"}), 2,
                 "width");
     expectError(run({"render", path("a.tessera"), "-o", path("b.png"), "--scale", "nan"}), 2, "scale");

@@ -264,6 +264,66 @@ TEST(Validate, StopsAtBrokenConnectivity) {
     EXPECT_FALSE(validate(pinched).valid());
 }
 
+// A column of edges from the top of the picture down to y = 40, blurred, between random colours.
+PatchMesh blurredCut() {
+    PatchMesh mesh = gridMesh(60, 60, 6, 6);  // vertex (i, j) is 7 j + i, at (10 i, 10 j) px
+    std::mt19937 random(9);
+    mesh.forEachPatch([&](PatchId p) { mesh.setSpline(p, testing::randomSpline(3, random)); });
+    for (uint32_t j = 0; j < 4; ++j) {
+        const EdgeId e = HalfedgeMesh::edge(between(mesh, 7 * j + 3, 7 * j + 10));
+        EdgeCurve curve = mesh.curve(e);
+        curve.feature = true;
+        curve.blurSigma = {2, 2};
+        mesh.setCurve(e, curve);
+    }
+    return mesh;
+}
+
+TEST(Validate, BlurOnFeaturesAlone) {
+    const PatchMesh sound = blurredCut();
+    EXPECT_THAT(validate(sound).violations, IsEmpty());
+    const EdgeId feature = HalfedgeMesh::edge(between(sound, 3, 10)),
+                 other = HalfedgeMesh::edge(between(sound, 8, 9));
+    const auto violations = [&](EdgeId e, float sigma) {
+        PatchMesh mesh = sound;
+        EdgeCurve curve = mesh.curve(e);
+        curve.blurSigma[1] = sigma;
+        mesh.setCurve(e, curve);
+        return validate(mesh).violations;
+    };
+    EXPECT_THAT(violations(feature, -1), Contains(HasSubstr("negative or not finite")));
+    EXPECT_THAT(violations(feature, std::numeric_limits<float>::infinity()),
+                Contains(HasSubstr("negative or not finite")));
+    EXPECT_THAT(violations(feature, std::numeric_limits<float>::quiet_NaN()),
+                Contains(HasSubstr("negative or not finite")));
+    EXPECT_THAT(violations(other, .5F), Contains(HasSubstr("is no feature")));
+}
+
+TEST(Validate, BlurThatLeavesAJumpIsTold) {
+    const PatchMesh mesh = blurredCut();
+    const EdgeBlur blur(mesh), hard(mesh, 0);
+    const auto violations = [&](const ColourOf& colour) { return blurViolations(mesh, blur, colour).size(); };
+    const auto right = [&](PatchId p, const Barycentric& at, glm::dvec2 point, double* out) {
+        blurredColour(mesh, blur, p, at, point, out);
+    };
+    EXPECT_EQ(violations(right), 0U);
+    const auto none = [&](PatchId p, const Barycentric& at, glm::dvec2 point, double* out) {
+        blurredColour(mesh, hard, p, at, point, out);
+    };
+    EXPECT_EQ(violations(none), 4U);
+    const auto exchanged = [&](PatchId p, const Barycentric& at, glm::dvec2 point, double* out) {
+        double plain[kMaxChannels];
+        none(p, at, point, plain);
+        right(p, at, point, out);
+        for (int c = 0; c < 3; ++c) out[c] = 2 * plain[c] - out[c];
+    };
+    EXPECT_EQ(violations(exchanged), 4U) << "own and other colour exchanged";
+    const auto shifted = [&](PatchId p, const Barycentric& at, glm::dvec2 point, double* out) {
+        right(p, at, point + glm::dvec2(0, .5), out);
+    };
+    EXPECT_EQ(violations(shifted), 4U) << "feet half a pixel off along the curve";
+}
+
 // The linear colour field 0.1 c + 0.01 x + 0.02 y on straight patches.
 PatchMesh linearColours() {
     PatchMesh mesh = nineCells();
@@ -305,6 +365,26 @@ TEST(MeasureSeams, AKnownStep) {
     EXPECT_EQ(measureSeams(mesh).p95, 0);
 }
 
+TEST(MeasureSeams, IsInTheWorkingSpace) {
+    PatchMesh mesh = gridMesh(8, 8, 1, 1);
+    mesh.setColourBasis(ColourBasis::Opponent);
+    const std::array<float, 3> grey{float(.5 * std::sqrt(3)), 0, 0};
+    mesh.setSpline(PatchId(1), constantSpline(grey));
+    EXPECT_NEAR(measureSeams(mesh).mean, .5 * 255, 1e-4);
+}
+
+TEST(MeasureSeams, BlurMakesNone) {
+    const PatchMesh mesh = blurredCut();
+    PatchMesh hard = mesh;
+    mesh.forEachEdge([&](EdgeId e) {
+        EdgeCurve curve = mesh.curve(e);
+        curve.blurSigma = {};
+        hard.setCurve(e, curve);
+    });
+    EXPECT_GT(measureSeams(hard).mean, 1);
+    EXPECT_NEAR(measureSeams(mesh).mean, measureSeams(hard).mean, .01);
+}
+
 TEST(MeasureSeams, WeightsByLength) {
     // Two cells of 3 px: the diagonals are sqrt 2 times as long as the side between the cells.
     PatchMesh mesh = gridMesh(6, 3, 2, 1);
@@ -332,7 +412,8 @@ TEST(MeasureSeams, ADifferenceThatGrowsAlongTheSeam) {
             {float(at[0]), float(at[1] - at[0]), float((at[2] - .5 * (at[0] + at[1])) / kDomainHeight)});
     mesh.setSpline(p, spline);
     EXPECT_NEAR(measureSeams(mesh).mean, .5 * 255, 1e-3);
-    EXPECT_NEAR(measureSeams(mesh).p95, 31.0 / 32 * 255, 1e-3) << "the last of the 16 samples of the edge";
+    EXPECT_NEAR(measureSeams(mesh).p95, 15.0 / 16 * 255, 1e-3)
+        << "of 17 samples the last but one: the last counts half";
 }
 
 }  // namespace
