@@ -76,8 +76,7 @@ void checkSplines(const PatchMesh& mesh, Findings& findings) {
         bool sound = s.coefficients.size() == s.offset(mesh.channels());
         for (int c = 0; c < mesh.channels(); ++c) {
             const int terms = s.terms[size_t(c)];
-            sound =
-                sound && terms <= int(s.centreCount());
+            sound = sound && terms <= int(s.centreCount());
             sound = sound && (terms == 0 || terms >= 3);
         }
         sound = sound && std::all_of(s.coefficients.begin(), s.coefficients.end(),

@@ -33,7 +33,8 @@ NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
     const auto& places = centreSites();
     for (const uint8_t s : mSites) mCentres.push_back(glm::vec2(places[s]));
     for (int k = 0; k < kCorners; ++k)
-        for (int row = 0; row < kPolynomials; ++row) coefficient(row, k) = kBarycentric[size_t(k)][size_t(row)];
+        for (int row = 0; row < kPolynomials; ++row)
+            coefficient(row, k) = kBarycentric[size_t(k)][size_t(row)];
 
     // Function i >= 3 before orthogonalization: alpha 1 at centre i, -L_j(c_i) at corner j (L the barycentric
     // coordinates), less its interpolant at the corners. Its values at the centres are a positive definite
@@ -84,7 +85,8 @@ NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
             for (int j = 0; j < kCorners; ++j) {
                 coefficient(kPolynomials + j, column) -= factor * shares[size_t(i)][j];
                 for (int row = 0; row < kPolynomials; ++row)
-                    coefficient(row, column) -= factor * cornerValues[size_t(i)][j] * kBarycentric[size_t(j)][size_t(row)];
+                    coefficient(row, column) -=
+                        factor * cornerValues[size_t(i)][j] * kBarycentric[size_t(j)][size_t(row)];
             }
         }
 }
@@ -96,7 +98,8 @@ void NewtonBasis::evaluate(const float* x, const float* y, size_t count, float* 
     evaluateKernels(mCentres, x, y, count, kernels.data(), stride);
     for (int k = 0; k < n; ++k) {
         float* to = out + size_t(k) * stride;
-        const auto b0 = float(coefficient(0, k)), b1 = float(coefficient(1, k)), b2 = float(coefficient(2, k));
+        const auto b0 = float(coefficient(0, k)), b1 = float(coefficient(1, k)),
+                   b2 = float(coefficient(2, k));
         for (size_t i = 0; i < count; ++i) to[i] = b0 + b1 * x[i] + b2 * y[i];
         if (k < kCorners) continue;
         for (int j = 0; j <= k; ++j) {
@@ -166,7 +169,8 @@ void evaluateSiteFunctions(const float* x, const float* y, size_t count, float* 
         for (size_t i = 0; i < count; ++i) to[i] -= l.x * a[i] + l.y * b[i] + l.z * c[i];
     }
     for (size_t j = 0; j < kCorners; ++j) {
-        const auto b0 = float(kBarycentric[j][0]), b1 = float(kBarycentric[j][1]), b2 = float(kBarycentric[j][2]);
+        const auto b0 = float(kBarycentric[j][0]), b1 = float(kBarycentric[j][1]),
+                   b2 = float(kBarycentric[j][2]);
         float* to = out + j * stride;
         for (size_t i = 0; i < count; ++i) to[i] = b0 + b1 * x[i] + b2 * y[i];
     }

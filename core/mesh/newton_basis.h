@@ -34,7 +34,9 @@ class NewtonBasis {
   private:
     // Coefficient `row` of function k: b0, b1, b2, then the alphas.
     double& coefficient(int row, int k) { return mCoefficients[size_t(row) * mSites.size() + size_t(k)]; }
-    double coefficient(int row, int k) const { return mCoefficients[size_t(row) * mSites.size() + size_t(k)]; }
+    double coefficient(int row, int k) const {
+        return mCoefficients[size_t(row) * mSites.size() + size_t(k)];
+    }
 
     std::vector<uint8_t> mSites;
     std::vector<glm::vec2> mCentres;

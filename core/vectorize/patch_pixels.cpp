@@ -54,7 +54,8 @@ void PixelSampler::sample(size_t i, PatchPixels& result) const {
     for (size_t first = 0; first < count; first += kBatch) {
         const size_t n = std::min(kBatch, count - first);
         for (size_t k = 0; k < n; ++k) {
-            const glm::dvec2 d = (glm::dvec2(result.at[first + k]) - inverse.centre()) * inverse.inverseSize();
+            const glm::dvec2 d =
+                (glm::dvec2(result.at[first + k]) - inverse.centre()) * inverse.inverseSize();
             x[k] = float(d.x);
             y[k] = float(d.y);
         }

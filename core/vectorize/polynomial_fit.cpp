@@ -72,15 +72,15 @@ __attribute__((target_clones("avx2", "default"))) void sumRow4(const float* cons
     sumRow<4>(rows, count, t0, dt, base, out);
 }
 
-constexpr int kBinomial[11][11] = {{1},
-                                                     {1, 1},
-                                                     {1, 2, 1},
-                                                     {1, 3, 3, 1},
-                                                     {1, 4, 6, 4, 1},
-                                                     {1, 5, 10, 10, 5, 1},
-                                                     {1, 6, 15, 20, 15, 6, 1},
-                                                     {1, 7, 21, 35, 35, 21, 7, 1},
-                                                     {1, 8, 28, 56, 70, 56, 28, 8, 1},{1,9,36,84,126,126,84,36,9,1},{1,10,45,120,210,252,210,120,45,10,1}};
+// Binomial coefficients by power and choice.
+struct Binomials {
+    int at[kGramPowers][kGramPowers];
+    constexpr Binomials() : at() {
+        for (int n = 0; n < kGramPowers; ++n)
+            for (int k = 0; k <= n; ++k) at[n][k] = k == 0 || k == n ? 1 : at[n - 1][k - 1] + at[n - 1][k];
+    }
+};
+constexpr Binomials kBinomials;
 
 // Exponents of the terms by ascending degree.
 struct Exponents {
@@ -126,7 +126,7 @@ PolynomialFit::PolynomialFit(const Image& picture)
     for (size_t n = 0; n < mEvenPowers.size(); ++n) {
         auto& e = mEvenPowers[n];
         if (n >= 2) e = mEvenPowers[n - 2];
-        if (n == 1) { e = {}; e[0] = 1; }
+        if (n == 1) e[0] = 1;
         if (n < 2) continue;
         const double u2 = .25 * double(n - 1) * double(n - 1);
         double power = 2;
@@ -160,7 +160,8 @@ void PolynomialFit::addRun(int y, int begin, int end, Sums& s) const {
         even[k] = mEvenPowers[size_t(count)][size_t(k)] * scale;
     for (int i = 0; i < kGramPowers; ++i) {
         powers[i] = 0;
-        for (int k = 0; 2 * k <= i; ++k) powers[i] += kBinomial[i][2 * k] * middlePower[i - 2 * k] * even[k];
+        for (int k = 0; 2 * k <= i; ++k)
+            powers[i] += kBinomials.at[i][2 * k] * middlePower[i - 2 * k] * even[k];
     }
 
     const double yScaled = dy / s.scaleY;

@@ -1,6 +1,6 @@
 // The squared error of the best polynomial over the pixels of a triangle: what the true-error stage compares
-// meshes by. A quartic has as many terms as a patch's spline has on the average, follows a picture as well,
-// and its normal equations come from sums along rows.
+// meshes by. A quintic follows a picture about as well as a patch's spline does, and its
+// normal equations come from sums along rows.
 #pragma once
 
 #include <array>

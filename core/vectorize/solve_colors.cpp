@@ -24,7 +24,7 @@ using RowMajorF = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 // The normal equations of one patch by itself, in the Newton basis.
 struct PatchEquations {
     MatrixXd gram;
-    MatrixXd moments;  // (terms x channels)
+    MatrixXd moments;   // (terms x channels)
     double weight = 0;  // pixels
     std::vector<uint8_t> sites;
     int count = 0;  // of sites: the most terms of a channel
@@ -49,7 +49,8 @@ class ColorSolver {
     void store(PatchMesh& mesh) const;
 
   private:
-    void pursueSites(PatchId p, const PatchPixels& pixels, std::array<std::vector<float>, kMaxChannels>& errors);
+    void pursueSites(PatchId p, const PatchPixels& pixels,
+                     std::array<std::vector<float>, kMaxChannels>& errors);
     void accumulate(PatchId p, const PatchPixels& pixels);
     MatrixXf seamRows(HalfedgeId h, bool reversed, size_t samples) const;
 
@@ -64,7 +65,8 @@ class ColorSolver {
 
 // Orthogonal matching pursuit: site after site, the one that takes most of the error that is left, over all
 // channels. Fills the patch's sites and, by channel, the error with 3, 4, ... of them.
-void ColorSolver::pursueSites(PatchId p, const PatchPixels& pixels, std::array<std::vector<float>, kMaxChannels>& errors) {
+void ColorSolver::pursueSites(PatchId p, const PatchPixels& pixels,
+                              std::array<std::vector<float>, kMaxChannels>& errors) {
     const auto count = Eigen::Index(pixels.pixels.size());
     const int channels = mMesh.channels();
     RowMajorF rows(kCentreSites, count);
@@ -121,7 +123,8 @@ void ColorSolver::chooseSites() {
         PatchPixels pixels;
         for (size_t i = begin; i < end; ++i) {
             sampler.sample(i, pixels);
-            if (!pixels.pixels.empty()) pursueSites(sampler.patches()[i], pixels, errors[sampler.patches()[i].index]);
+            if (!pixels.pixels.empty())
+                pursueSites(sampler.patches()[i], pixels, errors[sampler.patches()[i].index]);
         }
     });
     // As many terms as pay a price that is the same everywhere; the price is what the budget buys.
@@ -132,7 +135,8 @@ void ColorSolver::chooseSites() {
                 const auto& e = errors[p.index][c];
                 int best = 3;
                 for (int k = 4; k <= int(e.size()); ++k)
-                    if (double(e[size_t(k - 1)]) + price * k < double(e[size_t(best - 1)]) + price * best) best = k;
+                    if (double(e[size_t(k - 1)]) + price * k < double(e[size_t(best - 1)]) + price * best)
+                        best = k;
                 mEquations[p.index].terms[c] = best;
                 total += best;
             }
@@ -146,7 +150,16 @@ void ColorSolver::chooseSites() {
         (choose(middle) > budget ? low : high) = middle;
     }
     mTerms = choose(high);
-    { double e=0; mMesh.forEachPatch([&](PatchId p){for(size_t c=0;c<channels;c++) if(!errors[p.index][c].empty()) e+=errors[p.index][c][size_t(std::min<int>(mEquations[p.index].terms[c],int(errors[p.index][c].size()))-1)];}); printf("predicted %.2f\n",10*std::log10(double(mImage.planeSize())*3/e)); }
+    {
+        double e = 0;
+        mMesh.forEachPatch([&](PatchId p) {
+            for (size_t c = 0; c < channels; c++)
+                if (!errors[p.index][c].empty())
+                    e += errors[p.index][c][size_t(
+                        std::min<int>(mEquations[p.index].terms[c], int(errors[p.index][c].size())) - 1)];
+        });
+        printf("predicted %.2f\n", 10 * std::log10(double(mImage.planeSize()) * 3 / e));
+    }
     mMesh.forEachPatch([&](PatchId p) {
         PatchEquations& eq = mEquations[p.index];
         eq.count = *std::max_element(eq.terms.begin(), eq.terms.end());
@@ -226,7 +239,8 @@ MatrixXf ColorSolver::seamRows(HalfedgeId h, bool reversed, size_t samples) cons
         tangent /= std::max(1e-9, std::sqrt(tangent.x * tangent.x + tangent.y * tangent.y));
         const glm::dvec2 normal(-tangent.y, tangent.x);
         // The step in (v, w) that goes along the normal.
-        const double dv = det > 1e-9 ? cross(normal, at.dw) / det : 0, dw = det > 1e-9 ? cross(at.dv, normal) / det : 0;
+        const double dv = det > 1e-9 ? cross(normal, at.dw) / det : 0,
+                     dw = det > 1e-9 ? cross(at.dv, normal) / det : 0;
         const double stepX = dv + .5 * dw, stepY = kDomainHeight * dw;
         for (int k = 0; k < n; ++k) {
             rows(Eigen::Index(2 * i), k) = float(w0 * value[size_t(k)]);
@@ -358,7 +372,8 @@ void ColorSolver::store(PatchMesh& mesh) const {
             const VectorXd& x = mSolution[size_t(c)][p.index];
             factors[size_t(c)] = {x.data(), size_t(x.size())};
         }
-        mesh.setSpline(p, NewtonBasis(mEquations[p.index].sites).spline({factors.data(), size_t(mMesh.channels())}));
+        mesh.setSpline(
+            p, NewtonBasis(mEquations[p.index].sites).spline({factors.data(), size_t(mMesh.channels())}));
     });
 }
 
