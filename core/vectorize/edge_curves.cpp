@@ -19,9 +19,9 @@ constexpr std::array<glm::ivec2, 3> kEdge{glm::ivec2(1, 0), {0, 1}, {1, 1}};
 // Variances of the stencils below: of the first derivatives, and of the second ones about.
 constexpr double kFirstVariance = 1.0 / 3, kSecondVariance = 1.0 / 5;
 // In the gradient's standard deviations under noise alone.
-constexpr double kNoiseLow = 2.8, kNoiseHigh = 5.5;
+constexpr double kNoiseLow = 3.5, kNoiseHigh = 7;
 // Steps in colour (Euclidean over the channels) that can be seen at all, and for sure.
-constexpr double kContrastLow = 5.0 / 255, kContrastHigh = 9.0 / 255;
+constexpr double kContrastLow = 6.0 / 255, kContrastHigh = 12.0 / 255;
 constexpr double kPeak = .3989422804014327;  // of the normal density
 constexpr int kClaimPx = 2;
 
@@ -30,55 +30,71 @@ constexpr int kClaimPx = 2;
 struct EdgeCurveFinder::Crossing {
     glm::dvec2 position;
     float magnitude = 0;
+    bool blurred = false;
     float curvature = 0;  // sum over its links of the decrease of mAcross along the direction
     int links = 0;
     std::array<uint32_t, 2> next{kNone, kNone};
 };
 
+struct EdgeCurveFinder::Trace {
+    std::vector<Crossing> crossings;
+    bool closed = false;
+};
+
 EdgeCurveFinder::EdgeCurveFinder(const Image& image)
     : mSmooth(image),
       mSquare(image.planeSize()),
+      mCoarserSquare(image.planeSize()),
       mDirection(image.planeSize()),
       mAcross(image.planeSize()),
       mIndex(image.planeSize() * 3, kNone),
       mTaken(image.planeSize(), 0) {}
 
+double EdgeCurveFinder::totalVariance(double sigmaPx) {
+    return smoothingVariance(sigmaPx) + 1.0 / 12;
+}
+
 double EdgeCurveFinder::smoothingVariance(double sigmaPx) {
     return sigmaPx * sigmaPx + 1.5 * kSecondVariance - .5 * kFirstVariance;
 }
 
-std::vector<EdgeCurve> EdgeCurveFinder::find(double sigmaPx, double minLengthPx,
+std::vector<EdgeCurve> EdgeCurveFinder::find(double sigmaPx, double nextSigmaPx, double minLengthPx,
                                              const std::stop_token& stop) {
     std::vector<EdgeCurve> curves;
+    smoothTo(sigmaPx, stop);
+    gradients(mSquare, &mDirection);
+    const double unit = kPeak / std::sqrt(totalVariance(sigmaPx)), noiseLevel = noise();
+    const auto low = float(std::max(kNoiseLow * noiseLevel, kContrastLow * unit));
+    const auto high = float(std::max(kNoiseHigh * noiseLevel, kContrastHigh * unit));
+    if (stop.stop_requested()) return curves;
+    derivativesAcross(low * low);
+    mBlurredRatio = 1e9F;  // which no ratio of gradients reaches
+    mNoiseSquare = float(2 * noiseLevel * noiseLevel);
+    if (nextSigmaPx > sigmaPx) {
+        smoothTo(nextSigmaPx, stop);
+        gradients(mCoarserSquare, nullptr);
+        mBlurredRatio = float(.9 * std::sqrt(totalVariance(sigmaPx) / totalVariance(nextSigmaPx)));
+    }
+    if (stop.stop_requested()) return curves;
+    std::vector<Crossing> found = crossings(low * low);
+    for (const int wantedLinks : {0, 1, 2})  // open curves from their ends, then closed ones
+        for (uint32_t i = 0; i < found.size() && !stop.stop_requested(); ++i)
+            if (found[i].links == wantedLinks) keep(follow(found, i), high, minLengthPx, curves);
+    for (const EdgeCurve& curve : curves) claim(curve);
+    return curves;
+}
+
+void EdgeCurveFinder::smoothTo(double sigmaPx, const std::stop_token& stop) {
+    if (sigmaPx <= mSigma) return;
     const double more = std::sqrt(sigmaPx * sigmaPx - mSigma * mSigma);
     for (int c = 0; c < mSmooth.channels() && !stop.stop_requested(); ++c) {
         cv::Mat plane(mSmooth.height(), mSmooth.width(), CV_32F, mSmooth.plane(c).data());
         cv::GaussianBlur(plane, plane, cv::Size(), more, more, cv::BORDER_REPLICATE);
     }
     mSigma = sigmaPx;
-    if (stop.stop_requested()) return curves;
-    gradients();
-    const double unit = kPeak / std::sqrt(smoothingVariance(sigmaPx) + 1.0 / 12), noiseLevel = noise();
-    const auto low = float(std::max(kNoiseLow * noiseLevel, kContrastLow * unit));
-    const auto high = float(std::max(kNoiseHigh * noiseLevel, kContrastHigh * unit));
-    derivativesAcross(low * low);
-    if (stop.stop_requested()) return curves;
-    std::vector<Crossing> found = crossings(low * low);
-    for (const int wantedLinks : {0, 1, 2})  // open curves from their ends, then closed ones
-        for (uint32_t i = 0; i < found.size() && !stop.stop_requested(); ++i) {
-            if (found[i].links != wantedLinks) continue;
-            bool strong = false;
-            EdgeCurve curve = follow(found, i, high, strong);
-            double length = 0;
-            for (size_t k = 1; k < curve.points.size(); ++k)
-                length += glm::distance(curve.points[k - 1].position, curve.points[k].position);
-            if (strong && length >= minLengthPx) curves.push_back(std::move(curve));
-        }
-    for (const EdgeCurve& curve : curves) claim(curve);
-    return curves;
 }
 
-void EdgeCurveFinder::gradients() {
+void EdgeCurveFinder::gradients(std::vector<float>& square, std::vector<glm::vec2>* direction) const {
     const int w = mSmooth.width(), h = mSmooth.height();
     parallelFor(size_t(h), 16, [&](size_t begin, size_t end) {
         std::vector<float> xx(size_t(w), 0.F), xy(xx), yy(xx);
@@ -105,24 +121,35 @@ void EdgeCurveFinder::gradients() {
             for (int x = 0; x < w; ++x) {
                 const auto i = size_t(x);
                 const float half = .5F * (xx[i] - yy[i]), root = std::sqrt(half * half + xy[i] * xy[i]);
-                mSquare[at(x, y)] = .5F * (xx[i] + yy[i]) + root;
+                square[at(x, y)] = .5F * (xx[i] + yy[i]) + root;
+                if (!direction) continue;
                 const glm::vec2 d = half >= 0 ? glm::vec2(half + root, xy[i]) : glm::vec2(xy[i], root - half);
                 const float length = glm::length(d);
-                mDirection[at(x, y)] = length > 0 ? d / length : glm::vec2(1, 0);
+                (*direction)[at(x, y)] = length > 0 ? d / length : glm::vec2(1, 0);
             }
         }
     });
 }
 
-// The scale of a Rayleigh distribution with the fifth percentile of ... of the gradients: most pictures have
-// that much surface without texture.
+// The scale of a Rayleigh distribution with the median that the gradients have where they are smallest: in a
+// few of the picture's blocks there is nothing but noise.
 double EdgeCurveFinder::noise() const {
-    constexpr double kShare = .2;
-    std::vector<float> sample;
-    for (size_t i = 0; i < mSquare.size(); i += 7) sample.push_back(mSquare[i]);
-    const auto at = sample.begin() + std::ptrdiff_t(kShare * double(sample.size()));
-    std::nth_element(sample.begin(), at, sample.end());
-    return std::sqrt(double(*at) / (-2 * std::log(1 - kShare)));
+    constexpr int kBlockPx = 24;
+    constexpr double kShare = .06;
+    const int w = mSmooth.width(), h = mSmooth.height();
+    std::vector<float> medians, block;
+    for (int y0 = 0; y0 < h; y0 += kBlockPx)
+        for (int x0 = 0; x0 < w; x0 += kBlockPx) {
+            block.clear();
+            for (int y = y0; y < std::min(y0 + kBlockPx, h); y += 2)
+                for (int x = x0; x < std::min(x0 + kBlockPx, w); x += 2) block.push_back(mSquare[at(x, y)]);
+            const auto middle = block.begin() + std::ptrdiff_t(block.size() / 2);
+            std::nth_element(block.begin(), middle, block.end());
+            medians.push_back(*middle);
+        }
+    const auto low = medians.begin() + std::ptrdiff_t(kShare * double(medians.size()));
+    std::nth_element(medians.begin(), low, medians.end());
+    return std::sqrt(double(*low) / (2 * std::log(2.0)));
 }
 
 // The second derivative along the gradient plus half of that along the edge, over the first: along a blurred
@@ -180,8 +207,10 @@ std::vector<EdgeCurveFinder::Crossing> EdgeCurveFinder::crossings(float least) {
                 const double t = std::clamp(double(from) / (double(from) - to), .02, .98);
                 mIndex[3 * p + e] = uint32_t(found.size());
                 const double square = (1 - t) * mSquare[p] + t * mSquare[q];
-                found.push_back(
-                    {{x + .5 + t * kEdge[e].x, y + .5 + t * kEdge[e].y}, float(std::sqrt(square))});
+                const double coarser = (1 - t) * mCoarserSquare[p] + t * mCoarserSquare[q];
+                found.push_back({{x + .5 + t * kEdge[e].x, y + .5 + t * kEdge[e].y},
+                                 float(std::sqrt(square)),
+                                 coarser > mBlurredRatio * (square - 1.5 * mNoiseSquare)});
             }
         }
     for (int y = 0; y + 1 < h; ++y)
@@ -216,29 +245,56 @@ void EdgeCurveFinder::linkInTriangle(int x, int y, bool upper, std::vector<Cross
     }
 }
 
-// The curve from `start` on; takes its crossings out of `found`. Strong: some pixels of it are above `high`.
-EdgeCurve EdgeCurveFinder::follow(std::vector<Crossing>& found, uint32_t start, float high,
-                                  bool& strong) const {
-    EdgeCurve curve;
-    int above = 0;
-    uint32_t i = start;
-    curve.closed = found[start].links == 2;
-    while (i != kNone) {
+// The crossings of the curve from `start` on, which are then no longer linked.
+EdgeCurveFinder::Trace EdgeCurveFinder::follow(std::vector<Crossing>& found, uint32_t start) {
+    Trace trace;
+    trace.closed = found[start].links == 2;
+    for (uint32_t i = start; i != kNone;) {
         Crossing& here = found[i];
-        above += here.magnitude >= high;
-        curve.points.push_back({here.position, here.links / std::max(double(here.curvature), 1e-3)});
+        trace.crossings.push_back(here);
         here.links = -1;
-        uint32_t next = kNone;
+        i = kNone;
         for (const uint32_t n : here.next)
             if (n != kNone && found[n].links >= 0) {
-                next = n;
+                i = n;
                 break;
             }
-        i = next;
     }
-    constexpr int kStrongPoints = 4;
-    strong = above >= kStrongPoints;
-    return curve;
+    return trace;
+}
+
+// Adds the parts of a trace that are sharp enough for this scale, strong in some places and long enough.
+void EdgeCurveFinder::keep(const Trace& trace, float high, double minLengthPx,
+                           std::vector<EdgeCurve>& curves) const {
+    constexpr int kWindow = 12, kStrongPoints = 4;
+    const auto n = int(trace.crossings.size());
+    EdgeCurve part;
+    int strong = 0;
+    double length = 0;
+    const auto finish = [&] {
+        if (strong >= kStrongPoints && length >= minLengthPx) curves.push_back(part);
+        part = {};
+        strong = 0, length = 0;
+    };
+    int blurred = 0;  // in the window around i, which ends at the ends of the trace
+    for (int i = 0; i < std::min(kWindow, n); ++i) blurred += trace.crossings[size_t(i)].blurred;
+    bool whole = true;
+    for (int i = 0; i < n; ++i) {
+        if (i + kWindow < n) blurred += trace.crossings[size_t(i + kWindow)].blurred;
+        if (i - kWindow > 0) blurred -= trace.crossings[size_t(i - kWindow - 1)].blurred;
+        const int size = std::min(i + kWindow, n - 1) - std::max(i - kWindow, 0) + 1;
+        const Crossing& here = trace.crossings[size_t(i)];
+        if (2 * blurred > size) {
+            whole = false;
+            finish();
+            continue;
+        }
+        if (!part.points.empty()) length += glm::distance(part.points.back().position, here.position);
+        part.points.push_back({here.position, here.links / std::max(double(here.curvature), 1e-3)});
+        strong += here.magnitude >= high;
+    }
+    part.closed = trace.closed && whole;
+    finish();
 }
 
 void EdgeCurveFinder::claim(const EdgeCurve& curve) {

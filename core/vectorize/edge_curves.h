@@ -26,29 +26,39 @@ class EdgeCurveFinder {
   public:
     explicit EdgeCurveFinder(const Image& image);
 
-    // Curves at least minLengthPx long, in a fixed order, that keep 2 px away from those of the scales
-    // before. A gradient counts above what noise gives (from the gradients' own distribution) and above what
-    // a step of visible contrast gives. Ends early, with curves missing, where `stop` is asked for.
-    std::vector<EdgeCurve> find(double sigmaPx, double minLengthPx, const std::stop_token& stop);
+    // Curves at least minLengthPx long, in a fixed order, that keep 2 px away from those of the scales before
+    // and are not so blurred that the scale to come next shows them better (Lindeberg's normalized gradient;
+    // nextSigmaPx is 0 where none comes). A gradient counts above what noise gives (from the gradients' own
+    // distribution) and above what a step of visible contrast gives. Ends early, with curves missing, where
+    // `stop` is asked for.
+    std::vector<EdgeCurve> find(double sigmaPx, double nextSigmaPx, double minLengthPx,
+                                const std::stop_token& stop);
 
     // Variance, in px^2, of all smoothing before a curve's variance is measured but for the picture's own.
     static double smoothingVariance(double sigmaPx);
 
   private:
     struct Crossing;
+    struct Trace;
 
-    void gradients();
+    static double totalVariance(double sigmaPx);
+    void smoothTo(double sigmaPx, const std::stop_token& stop);
+    void gradients(std::vector<float>& square, std::vector<glm::vec2>* direction) const;
     double noise() const;
     void derivativesAcross(float least);
     std::vector<Crossing> crossings(float least);
     void linkInTriangle(int x, int y, bool upper, std::vector<Crossing>& found) const;
-    EdgeCurve follow(std::vector<Crossing>& found, uint32_t start, float high, bool& strong) const;
+    static Trace follow(std::vector<Crossing>& found, uint32_t start);
+    void keep(const Trace& trace, float high, double minLengthPx, std::vector<EdgeCurve>& curves) const;
     void claim(const EdgeCurve& curve);
     size_t at(int x, int y) const { return size_t(y) * size_t(mSmooth.width()) + size_t(x); }
 
     Image mSmooth;
     double mSigma = 0;
     std::vector<float> mSquare;         // of the gradient's magnitude
+    std::vector<float> mCoarserSquare;  // the same at the next scale
+    float mBlurredRatio = 0;            // of the two, above which the next scale is better
+    float mNoiseSquare = 0;             // what noise adds to mSquare
     std::vector<glm::vec2> mDirection;  // of unit length; its sign means nothing
     std::vector<float> mAcross;         // second derivative over first, along mDirection
     std::vector<uint32_t> mIndex;       // of the crossing on each of a pixel's three edges

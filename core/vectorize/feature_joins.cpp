@@ -15,7 +15,7 @@ namespace tessera {
 
 namespace {
 
-constexpr double kTipGapPx = 3, kTouchPx = 2, kHeadingPx = 4;
+constexpr double kTipGapPx = 3, kTouchPx = 2, kHeadingPx = 3;
 constexpr double kContinues = .64;  // cosine of 50 degrees
 constexpr double kHeads = .77;      // cosine of 40 degrees
 // Junctions closer than this along a chain are one; a tip does not run into its own chain this near its end.
@@ -237,6 +237,31 @@ void reverse(FeatureChain& chain) {
     const auto last = uint32_t(chain.points.size() - 1);
     for (uint32_t& corner : chain.corners) corner = last - corner;
     std::reverse(chain.corners.begin(), chain.corners.end());
+}
+
+std::vector<FeatureChain> withoutPoints(FeatureChain chain, std::vector<bool> drop) {
+    const auto first = std::find(drop.begin(), drop.end(), true);
+    if (first == drop.end()) return {std::move(chain)};
+    if (chain.closed) {
+        const auto turn = first - drop.begin();
+        std::rotate(drop.begin(), first, drop.end());
+        std::rotate(chain.points.begin(), chain.points.begin() + turn, chain.points.end());
+    }
+    std::vector<FeatureChain> parts;
+    for (size_t i = 0; i < drop.size();) {
+        size_t j = i;
+        while (j < drop.size() && !drop[j]) ++j;
+        if (j - i >= 2) {
+            FeatureChain part;
+            part.points.assign(chain.points.begin() + std::ptrdiff_t(i),
+                               chain.points.begin() + std::ptrdiff_t(j));
+            if (!chain.closed && i == 0) part.ends[0] = chain.ends[0];
+            if (!chain.closed && j == drop.size()) part.ends[1] = chain.ends[1];
+            parts.push_back(std::move(part));
+        }
+        i = j + 1;
+    }
+    return parts;
 }
 
 std::vector<FeatureChain> connect(std::vector<FeatureChain> chains, const std::vector<uint32_t>& partner) {

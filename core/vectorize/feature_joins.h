@@ -23,6 +23,10 @@ glm::dvec2 outward(const FeatureChain& chain, bool last, double spanPx = 3.5);
 // Turns a chain around; its jumps change sign.
 void reverse(FeatureChain& chain);
 
+// The parts of at least 2 points that are left of a chain without some of its points; where it was cut they
+// end in tips. They have no corners and no importance yet.
+std::vector<FeatureChain> withoutPoints(FeatureChain chain, std::vector<bool> drop);
+
 // Connects end e to end partner[e] (which must name e; kNoEnd: to none). A chain that closes on itself
 // becomes a closed one. Gaps are filled with points on the straight line.
 std::vector<FeatureChain> connect(std::vector<FeatureChain> chains, const std::vector<uint32_t>& partner);
@@ -30,7 +34,7 @@ std::vector<FeatureChain> connect(std::vector<FeatureChain> chains, const std::v
 // Connects tips within 3 px that point at each other.
 std::vector<FeatureChain> joinTips(std::vector<FeatureChain> chains);
 
-// Moves each tip that is within 2 px of another chain, or runs into it within 4 px, onto it, and cuts that
+// Moves each tip that is within 2 px of another chain, or runs into it within 3 px, onto it, and cuts that
 // chain there.
 std::vector<FeatureChain> joinJunctions(std::vector<FeatureChain> chains);
 

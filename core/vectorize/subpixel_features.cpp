@@ -19,11 +19,12 @@ namespace tessera {
 
 namespace {
 
-constexpr std::array kScalesPx{.7, 1.2, 2.0, 3.4};
+constexpr std::array kScalesPx{.7, 1.6, 3.6};
 constexpr double kStepPx = .8;  // between points of a chain
 constexpr double kBorderPx = 1.5;
-constexpr float kVisible = 4.F / 255;
-constexpr int kTurnPoints = 3;  // on either side of a corner
+constexpr double kVisible = 4.0 / 255;
+constexpr double kSurfacePx = .92 * kMostBlurPx;  // what is blurred more is a surface's shading
+constexpr int kTurnPoints = 3;                    // on either side of a corner
 
 // Points at even steps of about kStepPx.
 FeatureChain resampled(const EdgeCurve& curve, double scalePx) {
@@ -125,6 +126,30 @@ void smooth(FeatureChain& chain) {
     for (size_t i = 0; i < moved.size(); ++i) chain.points[i].position = moved[i];
 }
 
+// Removes what runs along the picture's border so close that no patch has room between.
+std::vector<FeatureChain> awayFromBorder(std::vector<FeatureChain> chains, int width, int height) {
+    constexpr double kRoomPx = 4, kParallel = .35;
+    std::vector<FeatureChain> kept;
+    for (FeatureChain& chain : chains) {
+        const auto n = int(chain.points.size());
+        std::vector<bool> drop(chain.points.size(), false);
+        for (int i = 0; i < n; ++i) {
+            const auto at = [&](int k) {
+                return chain
+                    .points[chain.closed ? wrapped(chain, i + k) : size_t(std::clamp(i + k, 0, n - 1))]
+                    .position;
+            };
+            const glm::dvec2 p = at(0), along = at(3) - at(-3);
+            const double length = glm::length(along);
+            drop[size_t(i)] =
+                (std::min(p.x, width - p.x) < kRoomPx && std::abs(along.x) < kParallel * length) ||
+                (std::min(p.y, height - p.y) < kRoomPx && std::abs(along.y) < kParallel * length);
+        }
+        for (FeatureChain& part : withoutPoints(std::move(chain), drop)) kept.push_back(std::move(part));
+    }
+    return kept;
+}
+
 // Extends ends within kBorderPx of the picture's border straight to it.
 void extendToBorder(FeatureChain& chain, int width, int height) {
     if (chain.closed) return;
@@ -154,12 +179,6 @@ void extendToBorder(FeatureChain& chain, int width, int height) {
         }
         if (!last) reverse(chain);
     }
-}
-
-double meanContrast(const FeatureChain& chain) {
-    double sum = 0;
-    for (const FeaturePoint& p : chain.points) sum += p.contrast;
-    return sum / double(chain.points.size());
 }
 
 void setImportance(FeatureChain& chain) {
@@ -206,12 +225,13 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
     {
         EdgeCurveFinder finder(image);
         for (size_t s = 0; s < kScalesPx.size(); ++s) {
-            const auto curves = finder.find(kScalesPx[s], .5 * settings.minChainPixels, progress.stopToken());
+            const auto curves = finder.find(kScalesPx[s], s + 1 < kScalesPx.size() ? kScalesPx[s + 1] : 0,
+                                            .5 * settings.minChainPixels, progress.stopToken());
             for (const EdgeCurve& curve : curves) chains.push_back(resampled(curve, kScalesPx[s]));
-            if (!progress.step(.15 * double(s + 1))) return stopped();
+            if (!progress.step(.2 * double(s + 1))) return stopped();
         }
     }
-    chains = joinTips(std::move(chains));
+    chains = joinTips(awayFromBorder(std::move(chains), image.width(), image.height()));
     eachChain(chains, smooth);
     eachChain(chains, [&](FeatureChain& chain) { extendToBorder(chain, image.width(), image.height()); });
     if (!progress.step(.65)) return stopped();
@@ -219,7 +239,12 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
     if (!progress.step(.7)) return stopped();
     fitProfiles(image, chains, progress.stopToken());
     if (!progress.step(.95)) return stopped();
-    std::erase_if(chains, [](const FeatureChain& chain) { return meanContrast(chain) < kVisible; });
+    std::erase_if(chains, [](const FeatureChain& chain) {
+        double contrast = 0, sigma = 0;
+        for (const FeaturePoint& p : chain.points) contrast += p.contrast, sigma += p.sigma;
+        const auto n = double(chain.points.size());
+        return contrast < kVisible * n || sigma > kSurfacePx * n;
+    });
     chains = dropShort(std::move(chains), settings.minChainPixels);
     eachChain(chains, [&](FeatureChain& chain) {
         chain.corners = findCorners(chain, settings.cornerDegrees);
