@@ -242,21 +242,26 @@ void reverse(FeatureChain& chain) {
 std::vector<FeatureChain> withoutPoints(FeatureChain chain, std::vector<bool> drop) {
     const auto first = std::find(drop.begin(), drop.end(), true);
     if (first == drop.end()) return {std::move(chain)};
+    const auto n = uint32_t(chain.points.size());
     if (chain.closed) {
-        const auto turn = first - drop.begin();
+        const auto turn = uint32_t(first - drop.begin());
         std::rotate(drop.begin(), first, drop.end());
         std::rotate(chain.points.begin(), chain.points.begin() + turn, chain.points.end());
+        for (uint32_t& corner : chain.corners) corner = (corner + n - turn) % n;
+        std::sort(chain.corners.begin(), chain.corners.end());
     }
     std::vector<FeatureChain> parts;
-    for (size_t i = 0; i < drop.size();) {
-        size_t j = i;
-        while (j < drop.size() && !drop[j]) ++j;
+    for (uint32_t i = 0; i < n;) {
+        uint32_t j = i;
+        while (j < n && !drop[j]) ++j;
         if (j - i >= 2) {
             FeatureChain part;
-            part.points.assign(chain.points.begin() + std::ptrdiff_t(i),
-                               chain.points.begin() + std::ptrdiff_t(j));
+            part.points.assign(chain.points.begin() + i, chain.points.begin() + j);
             if (!chain.closed && i == 0) part.ends[0] = chain.ends[0];
-            if (!chain.closed && j == drop.size()) part.ends[1] = chain.ends[1];
+            if (!chain.closed && j == n) part.ends[1] = chain.ends[1];
+            for (const uint32_t corner : chain.corners)
+                if (corner > i && corner + 1 < j) part.corners.push_back(corner - i);
+            part.importance = chain.importance * (j - i) / n;
             parts.push_back(std::move(part));
         }
         i = j + 1;

@@ -24,7 +24,7 @@ glm::dvec2 outward(const FeatureChain& chain, bool last, double spanPx = 3.5);
 void reverse(FeatureChain& chain);
 
 // The parts of at least 2 points that are left of a chain without some of its points; where it was cut they
-// end in tips. They have no corners and no importance yet.
+// end in tips.
 std::vector<FeatureChain> withoutPoints(FeatureChain chain, std::vector<bool> drop);
 
 // Connects end e to end partner[e] (which must name e; kNoEnd: to none). A chain that closes on itself
