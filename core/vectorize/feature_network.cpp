@@ -103,6 +103,14 @@ double turnOf(const BezierCurve& c) {
     return turn;
 }
 
+BezierCurve withoutTangents(const FeatureChain& chain, uint32_t first, uint32_t last) {
+    std::vector<glm::dvec2> points;
+    for (int k = 0; k <= stepsBetween(chain, first, last); ++k)
+        points.push_back(pointAt(chain, int(first) + k));
+    const BezierCurve curve = fitCurve(points);
+    return turnOf(curve) <= kMostTurn ? curve : straightCurve(points.front(), points.back());
+}
+
 class Builder {
   public:
     Builder(FeatureNetwork& network, const VectorizeSettings& settings, const Cuts& cuts)
@@ -196,11 +204,12 @@ class Builder {
 
     void addSegment(uint32_t c, uint32_t from, uint32_t to, uint32_t first, uint32_t last) {
         const FeatureChain& chain = mNetwork.chains[c];
-        const auto curve = fitChainPart(chain, first, last, mTolerance);
-        FeatureSegment s{from, to, c, first, last, {}, {chain.points[first].sigma, chain.points[last].sigma}};
-        const BezierCurve best =
-            curve ? *curve : straightCurve(pointAt(chain, int(first)), pointAt(chain, int(last)));
-        s.inner = {toLattice(best.p[1]), toLattice(best.p[2])};
+        // What is too short to be split further may be less exact, or turn at its nodes.
+        std::optional<BezierCurve> curve = fitChainPart(chain, first, last, mTolerance);
+        if (!curve) curve = fitChainPart(chain, first, last, 3 * mTolerance);
+        const BezierCurve best = curve ? *curve : withoutTangents(chain, first, last);
+        FeatureSegment s{from, to, c, first, last, {toLattice(best.p[1]), toLattice(best.p[2])}, {}};
+        s.sigma = {chain.points[first].sigma, chain.points[last].sigma};
         if (!curve)
             for (const uint32_t node : {from, to})
                 if (mNetwork.nodes[node].kind == FeatureNodeKind::Smooth)
