@@ -24,6 +24,8 @@ constexpr double kNoiseLow = 3.5, kNoiseHigh = 7;
 constexpr double kContrastLow = 6.0 / 255, kContrastHigh = 12.0 / 255;
 constexpr double kPeak = .3989422804014327;  // of the normal density
 constexpr int kClaimPx = 2;
+// For the finer of two scales: each change of scale along a curve costs a join.
+constexpr double kPreference = 1.1;
 
 }  // namespace
 
@@ -43,6 +45,7 @@ struct EdgeCurveFinder::Trace {
 
 EdgeCurveFinder::EdgeCurveFinder(const Image& image)
     : mSmooth(image),
+      mWhiteNoise(whiteNoise(image)),
       mSquare(image.planeSize()),
       mCoarserSquare(image.planeSize()),
       mDirection(image.planeSize()),
@@ -73,7 +76,7 @@ std::vector<EdgeCurve> EdgeCurveFinder::find(double sigmaPx, double nextSigmaPx,
     if (nextSigmaPx > sigmaPx) {
         smoothTo(nextSigmaPx, stop);
         gradients(mCoarserSquare, nullptr);
-        mBlurredRatio = float(.9 * std::sqrt(totalVariance(sigmaPx) / totalVariance(nextSigmaPx)));
+        mBlurredRatio = float(kPreference * std::sqrt(totalVariance(sigmaPx) / totalVariance(nextSigmaPx)));
     }
     if (stop.stop_requested()) return curves;
     std::vector<Crossing> found = crossings(low * low);
@@ -131,25 +134,59 @@ void EdgeCurveFinder::gradients(std::vector<float>& square, std::vector<glm::vec
     });
 }
 
-// The scale of a Rayleigh distribution with the median that the gradients have where they are smallest: in a
-// few of the picture's blocks there is nothing but noise.
-double EdgeCurveFinder::noise() const {
+// The least that `value` is in a block of the picture, but for the lowest few.
+template <class Value>
+double quietest(int w, int h, Value&& value) {
     constexpr int kBlockPx = 24;
     constexpr double kShare = .06;
-    const int w = mSmooth.width(), h = mSmooth.height();
-    std::vector<float> medians, block;
+    std::vector<double> values;
     for (int y0 = 0; y0 < h; y0 += kBlockPx)
-        for (int x0 = 0; x0 < w; x0 += kBlockPx) {
-            block.clear();
-            for (int y = y0; y < std::min(y0 + kBlockPx, h); y += 2)
-                for (int x = x0; x < std::min(x0 + kBlockPx, w); x += 2) block.push_back(mSquare[at(x, y)]);
-            const auto middle = block.begin() + std::ptrdiff_t(block.size() / 2);
-            std::nth_element(block.begin(), middle, block.end());
-            medians.push_back(*middle);
-        }
-    const auto low = medians.begin() + std::ptrdiff_t(kShare * double(medians.size()));
-    std::nth_element(medians.begin(), low, medians.end());
-    return std::sqrt(double(*low) / (2 * std::log(2.0)));
+        for (int x0 = 0; x0 < w; x0 += kBlockPx)
+            values.push_back(value(x0, y0, std::min(x0 + kBlockPx, w), std::min(y0 + kBlockPx, h)));
+    const auto low = values.begin() + std::ptrdiff_t(kShare * double(values.size()));
+    std::nth_element(values.begin(), low, values.end());
+    return *low;
+}
+
+// The deviation of white noise, all channels together, by a difference that sees neither slopes nor edges
+// along rows and columns (Immerkaer 1996).
+double EdgeCurveFinder::whiteNoise(const Image& image) {
+    const int w = image.width(), h = image.height();
+    if (w < 3 || h < 3) return 0;
+    const double square = quietest(w, h, [&](int x0, int y0, int x1, int y1) {
+        double sum = 0;
+        int count = 0;
+        for (int c = 0; c < image.channels(); ++c)
+            for (int y = std::max(y0, 1); y < std::min(y1, h - 1); y += 2)
+                for (int x = std::max(x0, 1); x < std::min(x1, w - 1); ++x) {
+                    const auto row = [&](int r) {
+                        return image.at(x - 1, r, c) - 2 * image.at(x, r, c) + image.at(x + 1, r, c);
+                    };
+                    const float d = row(y - 1) - 2 * row(y) + row(y + 1);
+                    sum += d * d / 36;
+                    count += c == 0;
+                }
+        return sum / std::max(count, 1);
+    });
+    return std::sqrt(square);
+}
+
+// The scale of a Rayleigh distribution with the median that the gradients have where they are smallest: in a
+// few of the picture's blocks there is nothing but noise. Where even those hold slopes, at most some times
+// what white noise would give; noise of photographs is smoother than white.
+double EdgeCurveFinder::noise() const {
+    constexpr double kMostOfWhite = 2.5;
+    std::vector<float> block;
+    const double median = quietest(mSmooth.width(), mSmooth.height(), [&](int x0, int y0, int x1, int y1) {
+        block.clear();
+        for (int y = y0; y < y1; y += 2)
+            for (int x = x0; x < x1; x += 2) block.push_back(mSquare[at(x, y)]);
+        const auto middle = block.begin() + std::ptrdiff_t(block.size() / 2);
+        std::nth_element(block.begin(), middle, block.end());
+        return double(*middle);
+    });
+    const double white = mWhiteNoise / (std::sqrt(8 * std::acos(-1.0)) * smoothingVariance(mSigma));
+    return std::min(std::sqrt(median / (2 * std::log(2.0))), kMostOfWhite * white);
 }
 
 // The second derivative along the gradient plus half of that along the edge, over the first: along a blurred
@@ -263,11 +300,35 @@ EdgeCurveFinder::Trace EdgeCurveFinder::follow(std::vector<Crossing>& found, uin
     return trace;
 }
 
+// Which crossings belong to a stretch that the next scale shows better: by majority in a window, and no
+// stretch is short.
+std::vector<bool> EdgeCurveFinder::blurredStretches(const Trace& trace) {
+    constexpr int kWindow = 12, kLeastStretch = 24;
+    const auto n = int(trace.crossings.size());
+    std::vector<int> sum(size_t(n) + 1, 0);
+    for (int i = 0; i < n; ++i) sum[size_t(i) + 1] = sum[size_t(i)] + trace.crossings[size_t(i)].blurred;
+    std::vector<bool> blurred(static_cast<size_t>(n));
+    for (int i = 0; i < n; ++i) {
+        const int from = std::max(i - kWindow, 0), to = std::min(i + kWindow + 1, n);
+        blurred[size_t(i)] = 2 * (sum[size_t(to)] - sum[size_t(from)]) > to - from;
+    }
+    for (const bool value : {true, false})
+        for (int i = 0; i < n;) {
+            int j = i;
+            while (j < n && blurred[size_t(j)] == blurred[size_t(i)]) ++j;
+            const bool whole = i == 0 && j == n;
+            if (blurred[size_t(i)] == value && j - i < kLeastStretch && !whole)
+                std::fill(blurred.begin() + i, blurred.begin() + j, !value);
+            i = j;
+        }
+    return blurred;
+}
+
 // Adds the parts of a trace that are sharp enough for this scale, strong in some places and long enough.
 void EdgeCurveFinder::keep(const Trace& trace, float high, double minLengthPx,
                            std::vector<EdgeCurve>& curves) const {
-    constexpr int kWindow = 12, kStrongPoints = 4;
-    const auto n = int(trace.crossings.size());
+    constexpr int kStrongPoints = 4;
+    const std::vector<bool> blurred = blurredStretches(trace);
     EdgeCurve part;
     int strong = 0;
     double length = 0;
@@ -276,24 +337,17 @@ void EdgeCurveFinder::keep(const Trace& trace, float high, double minLengthPx,
         part = {};
         strong = 0, length = 0;
     };
-    int blurred = 0;  // in the window around i, which ends at the ends of the trace
-    for (int i = 0; i < std::min(kWindow, n); ++i) blurred += trace.crossings[size_t(i)].blurred;
-    bool whole = true;
-    for (int i = 0; i < n; ++i) {
-        if (i + kWindow < n) blurred += trace.crossings[size_t(i + kWindow)].blurred;
-        if (i - kWindow > 0) blurred -= trace.crossings[size_t(i - kWindow - 1)].blurred;
-        const int size = std::min(i + kWindow, n - 1) - std::max(i - kWindow, 0) + 1;
-        const Crossing& here = trace.crossings[size_t(i)];
-        if (2 * blurred > size) {
-            whole = false;
+    for (size_t i = 0; i < blurred.size(); ++i) {
+        if (blurred[i]) {
             finish();
             continue;
         }
+        const Crossing& here = trace.crossings[i];
         if (!part.points.empty()) length += glm::distance(part.points.back().position, here.position);
         part.points.push_back({here.position, here.links / std::max(double(here.curvature), 1e-3)});
         strong += here.magnitude >= high;
     }
-    part.closed = trace.closed && whole;
+    part.closed = trace.closed && part.points.size() == trace.crossings.size();
     finish();
 }
 

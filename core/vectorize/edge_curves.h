@@ -44,16 +44,19 @@ class EdgeCurveFinder {
     static double totalVariance(double sigmaPx);
     void smoothTo(double sigmaPx, const std::stop_token& stop);
     void gradients(std::vector<float>& square, std::vector<glm::vec2>* direction) const;
+    static double whiteNoise(const Image& image);
     double noise() const;
     void derivativesAcross(float least);
     std::vector<Crossing> crossings(float least);
     void linkInTriangle(int x, int y, bool upper, std::vector<Crossing>& found) const;
     static Trace follow(std::vector<Crossing>& found, uint32_t start);
+    static std::vector<bool> blurredStretches(const Trace& trace);
     void keep(const Trace& trace, float high, double minLengthPx, std::vector<EdgeCurve>& curves) const;
     void claim(const EdgeCurve& curve);
     size_t at(int x, int y) const { return size_t(y) * size_t(mSmooth.width()) + size_t(x); }
 
     Image mSmooth;
+    double mWhiteNoise;  // deviation in the picture itself
     double mSigma = 0;
     std::vector<float> mSquare;         // of the gradient's magnitude
     std::vector<float> mCoarserSquare;  // the same at the next scale

@@ -15,7 +15,7 @@ namespace tessera {
 
 namespace {
 
-constexpr double kTipGapPx = 3, kTouchPx = 2, kHeadingPx = 3;
+constexpr double kTipGapPx = 4, kTouchPx = 2, kHeadingPx = 3;
 constexpr double kContinues = .64;  // cosine of 50 degrees
 constexpr double kHeads = .77;      // cosine of 40 degrees
 // Junctions closer than this along a chain are one; a tip does not run into its own chain this near its end.
@@ -317,7 +317,7 @@ std::vector<FeatureChain> joinTips(std::vector<FeatureChain> chains) {
             const double distance = glm::length(gap), along = glm::dot(ahead, back);
             if (distance > kTipGapPx || along < kContinues) return;
             const glm::dvec2 across = gap - ahead * glm::dot(gap, ahead);
-            if (glm::length(across) > std::max(1.0, .7 * distance)) return;
+            if (glm::length(across) > std::max(1.0, .5 * distance)) return;
             candidates.push_back({distance * (2 - along), end, to});
         });
     }

@@ -31,7 +31,7 @@ std::vector<FeatureChain> withoutPoints(FeatureChain chain, std::vector<bool> dr
 // becomes a closed one. Gaps are filled with points on the straight line.
 std::vector<FeatureChain> connect(std::vector<FeatureChain> chains, const std::vector<uint32_t>& partner);
 
-// Connects tips within 3 px that point at each other.
+// Connects tips within 4 px that point at each other.
 std::vector<FeatureChain> joinTips(std::vector<FeatureChain> chains);
 
 // Moves each tip that is within 2 px of another chain, or runs into it within 3 px, onto it, and cuts that

@@ -109,7 +109,9 @@ TEST(SubpixelFeatures, MoveWithThePictureBySubpixels) {
         double x = 0;
         for (const FeaturePoint& p : chains[0].points) x += p.position.x;
         x /= double(chains[0].points.size());
-        if (shift > 0) EXPECT_NEAR(x - before, .25, .02);
+        if (shift > 0) {
+            EXPECT_NEAR(x - before, .25, .02);
+        }
         before = x;
     }
 }
