@@ -277,7 +277,8 @@ std::optional<BezierCurve> fitChainPart(const FeatureChain& chain, uint32_t firs
     for (double& t : at) t /= total;
     const glm::dvec2 start = tangentAt(chain, first, 1, steps), end = tangentAt(chain, last, -1, steps);
     BezierCurve curve;
-    for (int round = 0; round < 4; ++round) {
+    constexpr int kRounds = 4, kLeastRounds = 2;  // of reparametrization
+    for (int round = 0; round < kRounds; ++round) {
         curve = withTangents(points, at, start, end);
         double worst = 0;
         for (size_t i = 1; i + 1 < points.size(); ++i) {
@@ -287,7 +288,8 @@ std::optional<BezierCurve> fitChainPart(const FeatureChain& chain, uint32_t firs
             worst = std::max(worst, glm::distance(points[i], curve.at(at[i])));
         }
         if (worst > 8 * tolerancePx) return {};
-        if (worst <= tolerancePx) return turnOf(curve) <= kMostTurn ? std::optional(curve) : std::nullopt;
+        if (round >= kLeastRounds && worst <= tolerancePx)
+            return turnOf(curve) <= kMostTurn ? std::optional(curve) : std::nullopt;
     }
     return {};
 }
