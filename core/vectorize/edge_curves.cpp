@@ -233,10 +233,11 @@ std::vector<EdgeCurveFinder::Crossing> EdgeCurveFinder::crossings(float least) {
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) {
             const size_t p = at(x, y);
+            std::fill_n(mIndex.begin() + std::ptrdiff_t(3 * p), 3, kNone);
+            if (!usable(p)) continue;
             for (size_t e = 0; e < 3; ++e) {
-                mIndex[3 * p + e] = kNone;
                 const int qx = x + kEdge[e].x, qy = y + kEdge[e].y;
-                if (qx >= w || qy >= h || !usable(p) || !usable(at(qx, qy))) continue;
+                if (qx >= w || qy >= h || !usable(at(qx, qy))) continue;
                 const size_t q = at(qx, qy);
                 const float sign = glm::dot(mDirection[p], mDirection[q]) < 0 ? -1.F : 1.F;
                 const float from = mAcross[p], to = sign * mAcross[q];

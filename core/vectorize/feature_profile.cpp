@@ -142,11 +142,12 @@ struct Step {
     float contrast = 0;
 };
 
-Step fitStep(const std::vector<Sample>& samples, int channels, float deviation, const Normal& normal) {
+Step fitStep(const std::vector<Sample>& samples, int channels, float deviation, float shift,
+             const Normal& normal) {
     double w = 0, wp = 0, wpp = 0;
     std::array<double, kMaxChannels> v{}, vp{};
     for (const Sample& s : samples) {
-        const double p = normal.phi(s.distance / deviation);
+        const double p = normal.phi((s.distance - shift) / deviation);
         w += s.weight;
         wp += s.weight * p;
         wpp += s.weight * p * p;
@@ -199,34 +200,47 @@ class ProfileFit {
         : mImage(image), mOwners(chains, image.width(), image.height()) {}
 
     void fit(FeatureChain& chain, uint32_t first) const {
-        std::vector<Frame> frames(chain.points.size());
+        const size_t n = chain.points.size();
+        std::vector<Frame> frames(n);
         std::vector<Sample> samples;
-        std::vector<float> logs(chain.points.size()), weights(chain.points.size());
-        for (size_t i = 0; i < chain.points.size(); ++i) {
+        std::vector<float> logs(n), weights(n);
+        for (size_t i = 0; i < n; ++i) {
             frames[i] = frameAt(chain, i);
             setReach(frames[i], chain, i, first);
+        }
+        // The smoothing below makes up for every other point, which looks at nearly the same pixels.
+        for (size_t i = 0; i < n; i += 2) {
             collect(mImage, frames[i], samples);
-            float deviation = std::hypot(chain.points[i].sigma, float(std::sqrt(kBoxVariance))), shift = 0;
-            for (int round = 0; round < 4; ++round) {
-                for (Sample& s : samples) s.distance -= shift;
-                const Step step = fitStep(samples, mImage.channels(), deviation, mNormal);
-                for (Sample& s : samples) s.distance += shift;
-                if (step.contrast <= 0) break;
-                weights[i] = step.contrast * step.contrast;
-                const float factor = improve(samples, mImage.channels(), step, deviation, shift, mNormal);
-                deviation = std::clamp(deviation * factor, least(), most());
-            }
-            logs[i] = std::log(deviation);
+            logs[i] = std::log(fitDeviation(samples, chain.points[i].sigma, weights[i]));
+        }
+        for (size_t i = 1; i < n; i += 2) {
+            const size_t next = i + 1 < n ? i + 1 : i - 1;
+            logs[i] = .5F * (logs[i - 1] + logs[next]);
+            weights[i] = .5F * (weights[i - 1] + weights[next]);
         }
         const std::vector<float> smooth = smoothed(chain, logs, weights);
-        for (size_t i = 0; i < chain.points.size(); ++i)
-            setPoint(chain.points[i], frames[i], std::exp(smooth[i]), samples);
+        for (size_t i = 0; i < n; ++i) setPoint(chain.points[i], frames[i], std::exp(smooth[i]), samples);
         smoothJumps(chain);
     }
 
   private:
     static float least() { return std::hypot(kLeastBlurPx, float(std::sqrt(kBoxVariance))); }
     static float most() { return std::hypot(kMostBlurPx, float(std::sqrt(kBoxVariance))); }
+
+    // Of blur and pixel together; weight is the square of the step's contrast.
+    float fitDeviation(std::vector<Sample>& samples, float sigma, float& weight) const {
+        constexpr int kRounds = 4;
+        float deviation = std::hypot(sigma, float(std::sqrt(kBoxVariance))), shift = 0;
+        for (int round = 0; round < kRounds; ++round) {
+            const Step step = fitStep(samples, mImage.channels(), deviation, shift, mNormal);
+            if (step.contrast <= 0) break;
+            weight = step.contrast * step.contrast;
+            const float factor = improve(samples, mImage.channels(), step, deviation, shift, mNormal);
+            deviation = std::clamp(deviation * factor, least(), most());
+            if (std::abs(factor - 1) < .01F) break;
+        }
+        return deviation;
+    }
 
     void setReach(Frame& frame, const FeatureChain& chain, size_t i, uint32_t first) const {
         const double wanted = std::clamp(kReachSigmas * std::hypot(double(chain.points[i].sigma), .3),
@@ -263,7 +277,7 @@ class ProfileFit {
 
     void setPoint(FeaturePoint& p, const Frame& frame, float deviation, std::vector<Sample>& samples) const {
         collect(mImage, frame, samples);
-        const Step step = fitStep(samples, mImage.channels(), deviation, mNormal);
+        const Step step = fitStep(samples, mImage.channels(), deviation, 0, mNormal);
         p.sigma = std::clamp(std::sqrt(std::max(deviation * deviation - float(kBoxVariance), 0.F)),
                              kLeastBlurPx, kMostBlurPx);
         p.jump = step.jump;
