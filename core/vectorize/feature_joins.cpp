@@ -384,4 +384,33 @@ std::vector<FeatureChain> settleJunctions(std::vector<FeatureChain> chains) {
     return connect(std::move(chains), partner);
 }
 
+std::vector<uint32_t> throughLines(const std::vector<FeatureChain>& chains) {
+    const std::vector<uint32_t> ends = endsByPlace(chains);
+    DisjointSets lines(chains.size());
+    for (size_t i = 0, j = 0; i < ends.size(); i = j) {
+        const glm::dvec2 place = endPoint(chains, ends[i]).position;
+        while (j < ends.size() && endPoint(chains, ends[j]).position == place) ++j;
+        std::vector<Candidate> pairs;
+        for (size_t a = i; a < j; ++a)
+            for (size_t b = a + 1; b < j; ++b) {
+                const double along = -glm::dot(outward(chains[ends[a] / 2], ends[a] % 2),
+                                               outward(chains[ends[b] / 2], ends[b] % 2));
+                if (along > kContinues) pairs.push_back({-along, ends[a], ends[b]});
+            }
+        std::sort(pairs.begin(), pairs.end());
+        std::vector<uint32_t> taken;
+        const auto isTaken = [&](uint32_t end) {
+            return std::find(taken.begin(), taken.end(), end) != taken.end();
+        };
+        for (const Candidate& pair : pairs) {
+            if (isTaken(pair.a) || isTaken(pair.b)) continue;
+            taken.insert(taken.end(), {pair.a, pair.b});
+            lines.unite(pair.a / 2, pair.b / 2);
+        }
+    }
+    std::vector<uint32_t> result;
+    for (uint32_t c = 0; c < chains.size(); ++c) result.push_back(lines.root(c));
+    return result;
+}
+
 }  // namespace tessera

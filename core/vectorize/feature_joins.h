@@ -42,4 +42,8 @@ std::vector<FeatureChain> joinJunctions(std::vector<FeatureChain> chains);
 // junction without others where one continues the other.
 std::vector<FeatureChain> settleJunctions(std::vector<FeatureChain> chains);
 
+// For each chain the number of its line: chains that continue each other through junctions are one, at each
+// junction by pairs, the straightest first.
+std::vector<uint32_t> throughLines(const std::vector<FeatureChain>& chains);
+
 }  // namespace tessera

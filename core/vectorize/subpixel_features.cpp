@@ -128,7 +128,7 @@ void smooth(FeatureChain& chain) {
 
 // Removes what runs along the picture's border so close that no patch has room between.
 std::vector<FeatureChain> awayFromBorder(std::vector<FeatureChain> chains, int width, int height) {
-    constexpr double kRoomPx = 4, kParallel = .35;
+    constexpr double kRoomPx = 5, kParallel = .35;
     std::vector<FeatureChain> kept;
     for (FeatureChain& chain : chains) {
         const auto n = int(chain.points.size());
@@ -259,15 +259,19 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
 }
 
 std::vector<FeatureChain> selectFeatures(std::vector<FeatureChain> chains, double lengthBudgetPx) {
-    constexpr double kEndsCostPx = 8;
-    std::vector<double> lengths, worth;
-    for (const FeatureChain& chain : chains) {
-        lengths.push_back(lengthPx(chain));
-        worth.push_back(chain.importance / (lengths.back() + kEndsCostPx));
+    constexpr double kEndsCostPx = 20;
+    // A line through junctions counts as one, so that it is not kept in pieces.
+    const std::vector<uint32_t> lines = throughLines(chains);
+    std::vector<double> lengths, lineLength(chains.size(), kEndsCostPx), lineImportance(chains.size(), 0);
+    for (size_t i = 0; i < chains.size(); ++i) {
+        lengths.push_back(lengthPx(chains[i]));
+        lineLength[lines[i]] += lengths[i];
+        lineImportance[lines[i]] += chains[i].importance;
     }
+    const auto worth = [&](size_t i) { return lineImportance[lines[i]] / lineLength[lines[i]]; };
     std::vector<size_t> order(chains.size());
     std::iota(order.begin(), order.end(), size_t(0));
-    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return worth[a] > worth[b]; });
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return worth(a) > worth(b); });
     std::vector<bool> keep(chains.size(), false);
     double total = 0;
     for (const size_t i : order) {

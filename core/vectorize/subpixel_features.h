@@ -55,9 +55,9 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
                                                          const VectorizeSettings& settings,
                                                          StageReport& report, Progress& progress);
 
-// The chains with the most importance for their length (each end costs a few px more), as many as
-// lengthBudgetPx holds, in their order. Chains that continue each other where all others of a junction are
-// gone become one.
+// The chains with the most importance for their length, as many as lengthBudgetPx holds, in their order; each
+// is judged by the whole line that it is part of, whose ends cost a few px more. Chains that continue each
+// other where all others of a junction are gone become one.
 std::vector<FeatureChain> selectFeatures(std::vector<FeatureChain> chains, double lengthBudgetPx);
 
 }  // namespace tessera
