@@ -87,13 +87,6 @@ class DisjointSets {
     std::vector<uint32_t> mParent;
 };
 
-std::vector<double> arcLengths(const FeatureChain& chain) {
-    std::vector<double> arc(chain.points.size(), 0);
-    for (size_t i = 1; i < arc.size(); ++i)
-        arc[i] = arc[i - 1] + glm::distance(chain.points[i - 1].position, chain.points[i].position);
-    return arc;
-}
-
 // A place in the middle of a chain where another runs into it.
 struct Cut {
     uint32_t point;
@@ -217,6 +210,13 @@ std::vector<uint32_t> endsByPlace(const std::vector<FeatureChain>& chains) {
 }
 
 }  // namespace
+
+std::vector<double> arcLengths(const FeatureChain& chain) {
+    std::vector<double> arc(chain.points.size(), 0);
+    for (size_t i = 1; i < arc.size(); ++i)
+        arc[i] = arc[i - 1] + glm::distance(chain.points[i - 1].position, chain.points[i].position);
+    return arc;
+}
 
 glm::dvec2 outward(const FeatureChain& chain, bool last, double spanPx) {
     const auto& points = chain.points;

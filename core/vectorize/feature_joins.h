@@ -17,6 +17,9 @@ inline const FeaturePoint& endPoint(const std::vector<FeatureChain>& chains, uin
     const auto& points = chains[end / 2].points;
     return end % 2 ? points.back() : points.front();
 }
+// Arc length from the first point to each.
+std::vector<double> arcLengths(const FeatureChain& chain);
+
 // Unit vector out of the chain at its end, over about `spanPx` of it.
 glm::dvec2 outward(const FeatureChain& chain, bool last, double spanPx = 3.5);
 

@@ -30,13 +30,6 @@ double arcBetween(const FeatureChain& chain, const std::vector<double>& arc, uin
     return std::min(direct, total - direct);
 }
 
-std::vector<double> arcLengths(const FeatureChain& chain) {
-    std::vector<double> arc(chain.points.size(), 0);
-    for (size_t i = 1; i < arc.size(); ++i)
-        arc[i] = arc[i - 1] + glm::distance(chain.points[i - 1].position, chain.points[i].position);
-    return arc;
-}
-
 // Whether points p of chain a and q of chain b are close only because they are near a junction of both, which
 // the chains leave in different directions.
 bool nearJunction(const FeatureChain& a, glm::dvec2 p, const FeatureChain& b, glm::dvec2 q) {
