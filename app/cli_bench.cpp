@@ -214,7 +214,7 @@ void printRuns(const std::vector<Json>& runs) {
                           {"error at edges", "edge_error_ratio"}}),
                  rows);
     std::vector<Column> cost;
-    for (const StageVariants& stage : stageTable())
+    for (const StageVariants& stage : stageTable(methodNames().front()))
         cost.push_back({stage.stage + " s", "seconds_" + stage.stage});
     for (const Column& column :
          {Column{"total s", "seconds"}, Column{"CPU s", "cpu_seconds"}, Column{"MB", "peak_rss_mb", 1},

@@ -38,7 +38,7 @@ Result<Document> asStored(Document document) {
 }
 
 Result<void> addErrorsAndPreview(Document& document, const Image& image, Progress& progress) {
-    auto rendering = rasterize(document.mesh, wholePicture(document.mesh, {1, 1}), {}, &progress);
+    auto rendering = rasterize(document.mesh, wholePicture(document.mesh, {1, 1}), {.samples = 4}, &progress);
     if (!rendering) return tl::unexpected(rendering.error());
     auto difference = compareImages(image, *rendering);
     if (!difference) return tl::unexpected(difference.error());
@@ -137,12 +137,16 @@ Result<std::pair<std::string, std::string>> cutAtEquals(const std::string& text,
 }
 
 std::string stagesHelp() {
-    std::string help = "Stages and their variants, for --stage:";
-    for (const StageVariants& row : stageTable()) {
-        help += "\n  " + row.stage + ":";
-        for (const std::string& variant : row.variants) help += " " + variant;
+    std::string help;
+    for (const std::string& method : methodNames()) {
+        help += "Stages of method '" + method + "' and their variants, for --stage:";
+        for (const StageVariants& row : stageTable(method)) {
+            help += "\n  " + row.stage + ":";
+            for (const std::string& variant : row.variants) help += " " + variant;
+        }
+        help += "\n";
     }
-    help += "\nSettings and their defaults, for --set:";
+    help += "Settings and their defaults, for --set:";
     for (const auto& [key, value] : toKeyValues({})) help += "\n  " + key + "=" + value;
     return help;
 }

@@ -71,12 +71,6 @@ class EquationBuilder {
     int mSide;
     EdgeBlur mBlur;
     std::vector<Parts> mParts;
-    // By sample of the patch at hand: its blur terms.
-    struct Terms {
-        uint32_t sample;
-        int count;
-        std::array<BlurTerm, kMaxBlurTerms> terms;
-    };
 };
 
 // Pixels that are not the patch's alone.
@@ -127,14 +121,14 @@ void EquationBuilder::addBlurTerms(PatchId p, const PatchPixels& pixels, const s
             x[i] = feet[first + i].at.x;
             y[i] = feet[first + i].at.y;
         }
-        const int terms = m.patches[q].count;
-        Rows values(terms, Eigen::Index(n));
+        const int functions = m.patches[q].count;
+        Rows values(functions, Eigen::Index(n));
         m.bases[q].evaluate(x.data(), y.data(), n, values.data(), n);
         float* row = nullptr;
         for (size_t i = 0; i < n; ++i) {
             if (i == 0 || feet[first + i].pixel != feet[first + i - 1].pixel)
-                row = parts.add(feet[first + i].pixel, q, size_t(terms));
-            for (int k = 0; k < terms; ++k) row[k] += feet[first + i].weight * values(k, Eigen::Index(i));
+                row = parts.add(feet[first + i].pixel, q, size_t(functions));
+            for (int k = 0; k < functions; ++k) row[k] += feet[first + i].weight * values(k, Eigen::Index(i));
         }
     }
 }

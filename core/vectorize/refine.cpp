@@ -3,28 +3,54 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/mesh/jacobian.h"
 
 namespace tessera {
 
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kSinMinAngle = .1391731;  // 8 degrees
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kGain = 1e-9;  // what a change must gain at least, of the error before
+
+// Sides are moved outwards by this much before the fit: pixels across an edge count for both its patches, as
+// they do in the fit of colours, and neighbours agree better.
+constexpr double kOverlapPx = .3;
+constexpr int kCurvePoints = 6;
+
+// The squared sine of the smallest angle; negative for a triangle turned over.
+double shape(LatticePoint a, LatticePoint b, LatticePoint c) {
+    const auto area2 = double(cross(b - a, c - a));
+    const auto squared = [](LatticePoint d) { return double(d.x) * d.x + double(d.y) * d.y; };
+    std::array<double, 3> l{squared(b - a), squared(c - b), squared(a - c)};
+    std::sort(l.begin(), l.end());
+    if (area2 <= 0 || l[1] <= 0) return -1;
+    return area2 * area2 / (l[1] * l[2]);
+}
+
+double leastShape() {
+    const double s = std::sin(Refiner::kMinAngleDegrees * kPi / 180);
+    return s * s;
+}
+
+glm::dvec2 unit(glm::dvec2 v) {
+    const double length = std::sqrt(v.x * v.x + v.y * v.y);
+    return length > 0 ? v / length : glm::dvec2(0);
+}
 
 }  // namespace
 
-Refiner::Refiner(WorkingMesh& work, const PolynomialFit& fit) : m(work), mFit(fit) {
-    mError.assign(m.mesh.faceCapacity(), 0);
-    parallelFor(mError.size(), 64, [&](size_t begin, size_t end) {
-        for (size_t f = begin; f < end; ++f)
-            if (m.mesh.alive(FaceId(uint32_t(f)))) updateFace(FaceId(uint32_t(f)));
-    });
+Refiner::Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings)
+    : m(cut), mFit(fit), mTolerancePx(settings.featureTolerancePx), mError(cut.mesh.faceCapacity(), 0) {
+    std::vector<FaceId> all;
+    for (uint32_t f = 0; f < mError.size(); ++f)
+        if (m.mesh.alive(FaceId(f))) all.push_back(FaceId(f));
+    updateFaces(all);
 }
 
 double Refiner::totalError() const {
@@ -34,212 +60,376 @@ double Refiner::totalError() const {
     return sum;
 }
 
-double Refiner::triangleError(LatticePoint a, LatticePoint b, LatticePoint c) const {
-    static const double grow = getenv("GROW") ? atof(getenv("GROW")) : 0;
-    std::array<glm::dvec2, 3> t{toPixels(a), toPixels(b), toPixels(c)}, g = t;
-    if (grow > 0)
-        for (size_t k = 0; k < 3; ++k) {
-            glm::dvec2 u = t[(k + 1) % 3] - t[k], v = t[(k + 2) % 3] - t[k];
-            u /= std::sqrt(u.x * u.x + u.y * u.y);
-            v /= std::sqrt(v.x * v.x + v.y * v.y);
-            const double s = cross(u, v);  // sine of the angle
-            g[k] -= (u + v) * std::min(grow / std::max(s, 1e-6), 2.0 * grow);
-        }
-    return mFit.error(g);
-}
-
-bool Refiner::wellShaped(LatticePoint a, LatticePoint b, LatticePoint c) const {
-    const int64_t area2 = cross(b - a, c - a);
-    if (area2 <= 0) return false;
-    const auto squared = [](LatticePoint d) { return double(d.x) * d.x + double(d.y) * d.y; };
-    double l[3] = {squared(b - a), squared(c - b), squared(a - c)};
-    std::sort(l, l + 3);
-    return double(area2) * double(area2) >= kSinMinAngle * kSinMinAngle * l[1] * l[2];
-}
-
-void Refiner::updateFace(FaceId f) {
-    const auto c = m.mesh.corners(f);
-    mError[f.index] = triangleError(at(c[0]), at(c[1]), at(c[2]));
-}
-
-Refiner::Option Refiner::bestCollapse(VertexId u) const {
-    const VertexKind kind = m.kinds[u.index];
-    Option best{kNever, {}};
-    if (kind == VertexKind::Corner) return best;
-    double before = 0;
-    m.mesh.forEachOutgoing(u, [&](HalfedgeId h) {
-        if (m.mesh.face(h).valid()) before += mError[m.mesh.face(h).index];
+void Refiner::updateFaces(const std::vector<FaceId>& faces) {
+    mError.resize(m.mesh.faceCapacity(), 0);
+    parallelFor(faces.size(), 16, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) updateFace(faces[i]);
     });
-    m.mesh.forEachOutgoing(u, [&](HalfedgeId h) {
-        const VertexId v = m.mesh.target(h);
-        if (kind == VertexKind::Border && !m.mesh.onBorder(HalfedgeMesh::edge(h))) return;
-        if (!m.mesh.canCollapse(h)) return;
-        if (kind == VertexKind::Border) {  // stays on its side of the picture
-            bool straight = true;
-            m.mesh.forEachOutgoing(u, [&](HalfedgeId o) {
-                if (m.mesh.onBorder(HalfedgeMesh::edge(o)) && o != h)
-                    straight = straight && cross(at(v) - at(u), at(m.mesh.target(o)) - at(u)) == 0;
-            });
-            if (!straight) return;
-        }
-        bool valid = true;
-        const auto forFaces = [&](auto&& visit) {
-            m.mesh.forEachOutgoing(u, [&](HalfedgeId o) {
-                if (!valid || !m.mesh.face(o).valid()) return;
-                const VertexId a = m.mesh.target(o), b = m.mesh.target(m.mesh.next(o));
-                if (a == v || b == v) return;
-                visit(a, b);
-            });
-        };
-        forFaces([&](VertexId a, VertexId b) { valid = wellShaped(at(v), at(a), at(b)); });
-        if (!valid) return;
-        double after = 0;
-        forFaces([&](VertexId a, VertexId b) {
-            after += triangleError(at(v), at(a), at(b));
-            valid = after - before < best.gain;
-        });
-        if (valid) best = {after - before, h};
-    });
-    return best;
 }
 
-bool Refiner::collapseTo(size_t faces, Progress& progress) {
-    std::vector<Option> options(m.mesh.vertexCapacity());
-    std::vector<VertexId> dirty;
-    for (uint32_t v = 0; v < options.size(); ++v)
-        if (m.mesh.alive(VertexId(v))) dirty.push_back(VertexId(v));
-    std::vector<uint8_t> touched(m.mesh.faceCapacity());
-    while (m.mesh.faceCount() > faces) {
-        if (progress.stopRequested()) return false;
-        parallelFor(dirty.size(), 8, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i) options[dirty[i].index] = bestCollapse(dirty[i]);
-        });
-        std::vector<VertexId> order;
-        for (uint32_t v = 0; v < options.size(); ++v)
-            if (m.mesh.alive(VertexId(v)) && options[v].gain < kNever) order.push_back(VertexId(v));
-        if (order.empty()) return true;
-        std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
-            const double ga = options[a.index].gain, gb = options[b.index].gain;
-            return ga != gb ? ga < gb : a < b;
-        });
-        const size_t batch =
-            std::max<size_t>(1, std::min((m.mesh.faceCount() - faces + 1) / 2, order.size() / 16 + 1));
-        std::fill(touched.begin(), touched.end(), 0);
-        dirty.clear();
-        std::vector<FaceId> changed;
-        size_t done = 0;
-        for (const VertexId u : order) {
-            if (done >= batch) break;
-            bool free = true;
-            m.mesh.forEachOutgoing(u, [&](HalfedgeId o) {
-                if (m.mesh.face(o).valid()) free = free && !touched[m.mesh.face(o).index];
-            });
-            const HalfedgeId h = options[u.index].halfedge;
-            if (!free || !m.mesh.canCollapse(h)) {
-                dirty.push_back(u);
-                continue;
-            }
-            const VertexId v = m.mesh.target(h);
-            std::vector<VertexId> ring;
-            std::vector<FaceId> star;
-            m.mesh.forEachOutgoing(u, [&](HalfedgeId o) {
-                ring.push_back(m.mesh.target(o));
-                if (m.mesh.face(o).valid()) star.push_back(m.mesh.face(o));
-            });
-            m.mesh.collapse(h);
-            for (const FaceId f : star)
-                if (m.mesh.alive(f)) {
-                    touched[f.index] = 1;
-                    changed.push_back(f);
-                }
-            for (const VertexId r : ring) dirty.push_back(r);
-            ++done;
-        }
-        parallelFor(changed.size(), 8, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i) updateFace(changed[i]);
-        });
-        std::sort(dirty.begin(), dirty.end());
-        dirty.erase(std::unique(dirty.begin(), dirty.end()), dirty.end());
-        std::erase_if(dirty, [&](VertexId v) { return !m.mesh.alive(v); });
-        if (done == 0) return true;
+Refiner::Triangle Refiner::triangle(FaceId f) const {
+    Triangle t;
+    size_t k = 0;
+    for (const HalfedgeId h : m.mesh.sides(f)) {
+        t.vertices[k] = m.mesh.origin(h);
+        t.corners[k] = at(t.vertices[k]);
+        t.curves[k++] = m.curve(HalfedgeMesh::edge(h));
+    }
+    return t;
+}
+
+const CutCurve* Refiner::curveBetween(VertexId a, VertexId b) const {
+    if (m.kinds[a.index] == VertexKind::Interior || m.kinds[b.index] == VertexKind::Interior) return nullptr;
+    const HalfedgeId h = m.mesh.find(a, b);
+    return h.valid() ? m.curve(HalfedgeMesh::edge(h)) : nullptr;
+}
+
+double Refiner::error(const Triangle& t) const {
+    std::array<glm::dvec2, 3> p;
+    for (size_t k = 0; k < 3; ++k) p[k] = toPixels(t.corners[k]);
+    // Each corner goes to where the sides moved outwards meet, but not far beyond.
+    std::array<glm::dvec2, 3> grown = p;
+    for (size_t k = 0; k < 3; ++k) {
+        const glm::dvec2 onward = unit(p[(k + 1) % 3] - p[k]), back = unit(p[(k + 2) % 3] - p[k]);
+        const double sine = std::max(cross(onward, back), .5);
+        const double beyondBack = t.curves[(k + 2) % 3] ? 0 : kOverlapPx;
+        const double beyondOnward = t.curves[k] ? 0 : kOverlapPx;
+        grown[k] -= onward * (beyondBack / sine) + back * (beyondOnward / sine);
+    }
+    if (!t.curves[0] && !t.curves[1] && !t.curves[2]) return mFit.error(grown);
+    std::array<glm::dvec2, 3 * (1 + kCurvePoints)> outline;
+    size_t n = 0;
+    for (size_t k = 0; k < 3; ++k) {
+        outline[n++] = grown[k];
+        if (!t.curves[k]) continue;
+        std::array<LatticePoint, 4> c = t.curves[k]->controlPoints(t.vertices[k], m.positions);
+        c[0] = t.corners[k];
+        c[3] = t.corners[(k + 1) % 3];
+        const BezierCurve curve = toPixels(c);
+        for (int i = 1; i <= kCurvePoints; ++i) outline[n++] = curve.at(double(i) / (kCurvePoints + 1));
+    }
+    return mFit.error(grown, {outline.data(), n});
+}
+
+bool Refiner::valid(const Triangle& t, double least) const {
+    if (shape(t.corners[0], t.corners[1], t.corners[2]) < least) return false;
+    if (!t.curves[0] && !t.curves[1] && !t.curves[2]) return true;
+    LatticeTriangle patch;
+    for (size_t k = 0; k < 3; ++k) {
+        const LatticePoint a = t.corners[k], b = t.corners[(k + 1) % 3];
+        const auto inner = straightControlPoints(a, b);
+        std::array<LatticePoint, 4> side{a, inner[0], inner[1], b};
+        if (t.curves[k]) side = t.curves[k]->controlPoints(t.vertices[k], m.positions);
+        patch.p[3 * k] = a;
+        patch.p[3 * k + 1] = side[1];
+        patch.p[3 * k + 2] = side[2];
+    }
+    patch.p[kInterior] = toLattice(defaultInterior(toPixels(patch)));
+    return certifiedInterior(patch).has_value();
+}
+
+// What changes around a vertex must be shaped like: well, or at least as the worst there is.
+double Refiner::worstShapeAround(VertexId v) const {
+    double worst = leastShape();
+    m.mesh.forEachOutgoing(v, [&](HalfedgeId h) {
+        if (!m.mesh.face(h).valid()) return;
+        const auto c = m.mesh.corners(m.mesh.face(h));
+        worst = std::min(worst, shape(at(c[0]), at(c[1]), at(c[2])));
+    });
+    return worst;
+}
+
+double Refiner::errorAround(VertexId v) const {
+    double sum = 0;
+    m.mesh.forEachOutgoing(v, [&](HalfedgeId h) {
+        if (m.mesh.face(h).valid()) sum += mError[m.mesh.face(h).index];
+    });
+    return sum;
+}
+
+// Whether a border vertex that goes to `to` stays on its side of the picture.
+bool Refiner::staysOnSide(VertexId v, LatticePoint to) const {
+    bool stays = true;
+    m.mesh.forEachOutgoing(v, [&](HalfedgeId h) {
+        if (m.mesh.onBorder(HalfedgeMesh::edge(h)))
+            stays = stays && cross(to - at(v), at(m.mesh.target(h)) - at(v)) == 0;
+    });
+    return stays;
+}
+
+bool Refiner::mayCollapse(HalfedgeId h) const {
+    const VertexId u = m.mesh.origin(h);
+    const EdgeId e = HalfedgeMesh::edge(h);
+    switch (m.kinds[u.index]) {
+        case VertexKind::Interior:
+            break;
+        case VertexKind::Border:
+            if (!m.mesh.onBorder(e) || !staysOnSide(u, at(m.mesh.target(h)))) return false;
+            break;
+        case VertexKind::Feature:
+            if (!m.curve(e)) return false;
+            break;
+        case VertexKind::FeatureEnd:
+        case VertexKind::Corner:
+            return false;
+    }
+    return m.mesh.canCollapse(h);
+}
+
+std::optional<Refiner::Merge> Refiner::merge(HalfedgeId h) const {
+    const CutCurve* along = m.curve(HalfedgeMesh::edge(h));
+    const VertexId u = m.mesh.origin(h), v = m.mesh.target(h);
+    Merge result;
+    m.mesh.forEachOutgoing(u, [&](HalfedgeId out) {
+        if (out != h && m.curve(HalfedgeMesh::edge(out))) result.before = out;
+    });
+    if (!result.before.valid()) return std::nullopt;
+    const CutCurve* other = m.curve(HalfedgeMesh::edge(result.before));
+    result.beyond = m.mesh.target(result.before);
+    if (other->chain != along->chain || result.beyond == v) return std::nullopt;
+    const CutCurve& first = along->from == u ? *other : *along;
+    const CutCurve& second = along->from == u ? *along : *other;
+    if (first.to != u || second.from != u) return std::nullopt;
+    const auto cubic = fitChainPart(m.chains[along->chain], first.first, second.last, mTolerancePx);
+    if (!cubic) return std::nullopt;
+    result.curve = {first.from,
+                    second.to,
+                    first.chain,
+                    first.first,
+                    second.last,
+                    {toLattice(cubic->p[1]), toLattice(cubic->p[2])},
+                    {first.sigma[0], second.sigma[1]}};
+    return result;
+}
+
+// On which sides the feature edge takes the place of the edge that it falls together with.
+std::array<bool, 2> Refiner::keptSides(HalfedgeId h, const Merge& merge) const {
+    std::array<bool, 2> keep{false, false};
+    for (size_t side = 0; side < 2; ++side) {
+        const HalfedgeId s = side == 0 ? h : HalfedgeMesh::twin(h);
+        if (m.mesh.face(s).valid()) keep[side] = m.mesh.target(m.mesh.next(s)) == merge.beyond;
+    }
+    return keep;
+}
+
+// The triangles that are there after the collapse of h; `before` is the error of those that go.
+bool Refiner::fansAfter(HalfedgeId h, const std::optional<Merge>& merge, std::vector<Triangle>& fans,
+                        double& before) const {
+    const VertexId u = m.mesh.origin(h), v = m.mesh.target(h);
+    const double least = worstShapeAround(u);
+    fans.clear();
+    bool good = true;
+    const auto curveFrom = [&](VertexId w) -> const CutCurve* {
+        if (merge && w == merge->beyond) return &merge->curve;
+        return curveBetween(v, w);
+    };
+    m.mesh.forEachOutgoing(u, [&](HalfedgeId out) {
+        if (!good || !m.mesh.face(out).valid()) return;
+        const HalfedgeId across = m.mesh.next(out);
+        const VertexId a = m.mesh.target(out), b = m.mesh.target(across);
+        if (a == v || b == v) return;
+        fans.push_back({{at(v), at(a), at(b)},
+                        {curveFrom(a), m.curve(HalfedgeMesh::edge(across)), curveFrom(b)},
+                        {v, a, b}});
+        good = valid(fans.back(), least);
+    });
+    // A feature that moves onto an edge beside it gives the face beyond that edge a curved side.
+    if (!merge || !good) return good;
+    const auto keep = keptSides(h, *merge);
+    for (size_t side = 0; side < 2; ++side) {
+        if (!keep[side]) continue;
+        const HalfedgeId s = side == 0 ? h : HalfedgeMesh::twin(h);
+        const HalfedgeId beyond = HalfedgeMesh::twin(side == 0 ? m.mesh.next(s) : m.mesh.prev(s));
+        if (!m.mesh.face(beyond).valid() || m.curve(HalfedgeMesh::edge(beyond))) return false;
+        const HalfedgeId n1 = m.mesh.next(beyond), n2 = m.mesh.next(n1);
+        const VertexId a = m.mesh.origin(beyond), b = m.mesh.origin(n1), c = m.mesh.origin(n2);
+        if (c == u) continue;  // goes as well
+        fans.push_back({{at(a), at(b), at(c)},
+                        {&merge->curve, m.curve(HalfedgeMesh::edge(n1)), m.curve(HalfedgeMesh::edge(n2))},
+                        {a, b, c}});
+        if (!valid(fans.back(), -1)) return false;
+        before += mError[m.mesh.face(beyond).index];
     }
     return true;
 }
 
-Refiner::Option Refiner::flipGain(EdgeId e) const {
-    Option none{kNever, {}};
-    if (!m.mesh.canFlip(e)) return none;
-    const HalfedgeId h = HalfedgeMesh::halfedge(e), t = HalfedgeMesh::twin(h);
-    const LatticePoint a = at(m.mesh.origin(h)), b = at(m.mesh.origin(t)),
-                       c = at(m.mesh.target(m.mesh.next(h))), d = at(m.mesh.target(m.mesh.next(t)));
-    if (!wellShaped(c, d, b) || !wellShaped(d, c, a)) return none;
-    const double before = mError[m.mesh.face(h).index] + mError[m.mesh.face(t).index];
-    double after = triangleError(c, d, b);
-    if (after >= before) return none;
-    after += triangleError(d, c, a);
-    return {after - before, h};
+Refiner::Option Refiner::bestCollapse(VertexId u) const {
+    Option best{kNever, {}};
+    const double around = errorAround(u);
+    std::vector<Triangle> fans;
+    m.mesh.forEachOutgoing(u, [&](HalfedgeId h) {
+        if (!mayCollapse(h)) return;
+        std::optional<Merge> curve;
+        if (m.kinds[u.index] == VertexKind::Feature && !(curve = merge(h))) return;
+        double before = around;
+        if (!fansAfter(h, curve, fans, before)) return;
+        double after = 0;
+        for (const Triangle& t : fans) {
+            after += error(t);
+            if (after - before >= best.cost) return;
+        }
+        best = {after - before, h};
+    });
+    return best;
 }
 
-size_t Refiner::flipPass() {
-    std::vector<Option> options(m.mesh.edgeCapacity());
-    parallelFor(options.size(), 32, [&](size_t begin, size_t end) {
+void Refiner::collapse(HalfedgeId h, std::vector<FaceId>& changed, std::vector<VertexId>& dirty) {
+    const VertexId u = m.mesh.origin(h), v = m.mesh.target(h);
+    std::array<bool, 2> keep{false, false};
+    std::optional<Merge> curve;
+    if (m.kinds[u.index] == VertexKind::Feature) {
+        curve = merge(h);
+        TESSERA_CHECK(curve);
+        keep = keptSides(h, *curve);
+    }
+    m.mesh.forEachOutgoing(u, [&](HalfedgeId out) { dirty.push_back(m.mesh.target(out)); });
+    m.mesh.collapse(h, keep);
+    if (curve) {
+        const HalfedgeId kept = m.mesh.find(v, curve->beyond);
+        m.curves[size_t(m.curveOfEdge[HalfedgeMesh::edge(kept).index])] = curve->curve;
+    }
+    m.mesh.forEachOutgoing(v, [&](HalfedgeId out) {
+        if (m.mesh.face(out).valid()) changed.push_back(m.mesh.face(out));
+    });
+}
+
+bool Refiner::collapseTo(size_t faces, Progress& progress) {
+    std::vector<Option> options(m.mesh.vertexCapacity(), {kNever, {}});
+    std::vector<VertexId> dirty;
+    for (uint32_t v = 0; v < options.size(); ++v)
+        if (m.mesh.alive(VertexId(v))) dirty.push_back(VertexId(v));
+    const size_t initial = m.mesh.faceCount();
+    std::vector<uint8_t> touched(m.mesh.faceCapacity());
+    // In batches: the cheapest sixteenth, as far as their stars do not touch.
+    constexpr size_t kShare = 16;
+    while (m.mesh.faceCount() > faces) {
+        if (!progress.step(double(initial - m.mesh.faceCount()) / double(initial - faces))) return false;
+        parallelFor(dirty.size(), 8, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end && !progress.stopRequested(); ++i)
+                options[dirty[i].index] = bestCollapse(dirty[i]);
+        });
+        std::vector<VertexId> order;
+        for (uint32_t v = 0; v < options.size(); ++v)
+            if (m.mesh.alive(VertexId(v)) && options[v].cost < kNever) order.push_back(VertexId(v));
+        std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
+            const double ca = options[a.index].cost, cb = options[b.index].cost;
+            return ca != cb ? ca < cb : a < b;
+        });
+        std::fill(touched.begin(), touched.end(), 0);
+        dirty.clear();
+        std::vector<FaceId> changed;
+        const size_t batch = std::min((m.mesh.faceCount() - faces + 1) / 2, order.size() / kShare + 1);
+        size_t done = 0;
+        for (const VertexId u : order) {
+            if (done >= batch) break;
+            const HalfedgeId h = options[u.index].halfedge;
+            bool free = m.mesh.alive(HalfedgeMesh::edge(h)) && m.mesh.origin(h) == u;
+            m.mesh.forEachOutgoing(u, [&](HalfedgeId out) {
+                for (const HalfedgeId side : {out, HalfedgeMesh::twin(m.mesh.next(out))})
+                    if (m.mesh.face(side).valid()) free = free && !touched[m.mesh.face(side).index];
+            });
+            if (!free || !m.mesh.canCollapse(h)) {
+                dirty.push_back(u);
+                continue;
+            }
+            const size_t from = changed.size();
+            collapse(h, changed, dirty);
+            for (size_t i = from; i < changed.size(); ++i) touched[changed[i].index] = 1;
+            ++done;
+        }
+        std::sort(changed.begin(), changed.end());
+        changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+        std::erase_if(changed, [&](FaceId f) { return !m.mesh.alive(f); });
+        updateFaces(changed);
+        for (const FaceId f : changed)
+            for (const VertexId v : m.mesh.corners(f)) dirty.push_back(v);
+        std::sort(dirty.begin(), dirty.end());
+        dirty.erase(std::unique(dirty.begin(), dirty.end()), dirty.end());
+        std::erase_if(dirty, [&](VertexId v) { return !m.mesh.alive(v); });
+        if (done == 0) break;
+    }
+    return true;
+}
+
+double Refiner::flipCost(EdgeId e) const {
+    if (m.curve(e) || !m.mesh.canFlip(e)) return kNever;
+    const HalfedgeId h = HalfedgeMesh::halfedge(e), t = HalfedgeMesh::twin(h);
+    const HalfedgeId h1 = m.mesh.next(h), h2 = m.mesh.next(h1), t1 = m.mesh.next(t), t2 = m.mesh.next(t1);
+    const VertexId a = m.mesh.origin(h), b = m.mesh.origin(t), c = m.mesh.origin(h2), d = m.mesh.origin(t2);
+    const auto curve = [&](HalfedgeId side) { return m.curve(HalfedgeMesh::edge(side)); };
+    const Triangle first{{at(c), at(d), at(b)}, {nullptr, curve(t2), curve(h1)}, {c, d, b}};
+    const Triangle second{{at(d), at(c), at(a)}, {nullptr, curve(h2), curve(t1)}, {d, c, a}};
+    const double least = std::min({leastShape(), shape(at(a), at(b), at(c)), shape(at(b), at(a), at(d))});
+    if (!valid(first, least) || !valid(second, least)) return kNever;
+    const double before = mError[m.mesh.face(h).index] + mError[m.mesh.face(t).index];
+    const double one = error(first);
+    if (one >= before) return kNever;
+    return one + error(second) - before * (1 - kGain);
+}
+
+size_t Refiner::flip() {
+    std::vector<double> costs(m.mesh.edgeCapacity(), kNever);
+    parallelFor(costs.size(), 32, [&](size_t begin, size_t end) {
         for (size_t e = begin; e < end; ++e)
-            options[e] =
-                m.mesh.alive(EdgeId(uint32_t(e))) ? flipGain(EdgeId(uint32_t(e))) : Option{kNever, {}};
+            if (m.mesh.alive(EdgeId(uint32_t(e)))) costs[e] = flipCost(EdgeId(uint32_t(e)));
     });
     std::vector<uint32_t> order;
-    for (uint32_t e = 0; e < options.size(); ++e)
-        if (options[e].gain < -1e-9) order.push_back(e);
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        return options[a].gain != options[b].gain ? options[a].gain < options[b].gain : a < b;
-    });
+    for (uint32_t e = 0; e < costs.size(); ++e)
+        if (costs[e] < 0) order.push_back(e);
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return costs[a] != costs[b] ? costs[a] < costs[b] : a < b; });
     std::vector<uint8_t> touched(m.mesh.faceCapacity(), 0);
-    size_t done = 0;
+    std::vector<FaceId> changed;
     for (const uint32_t e : order) {
         const HalfedgeId h = HalfedgeMesh::halfedge(EdgeId(e));
         const FaceId f = m.mesh.face(h), g = m.mesh.face(HalfedgeMesh::twin(h));
         if (touched[f.index] || touched[g.index] || !m.mesh.canFlip(EdgeId(e))) continue;
         m.mesh.flip(EdgeId(e));
         touched[f.index] = touched[g.index] = 1;
-        updateFace(f);
-        updateFace(g);
-        ++done;
+        changed.insert(changed.end(), {f, g});
     }
-    return done;
+    updateFaces(changed);
+    return changed.size() / 2;
 }
 
 LatticePoint Refiner::middle(EdgeId e) const {
     const HalfedgeId h = HalfedgeMesh::halfedge(e);
-    const LatticePoint s = at(m.mesh.origin(h)) + at(m.mesh.target(h));
-    return {s.x / 2, s.y / 2};
+    const LatticePoint sum = at(m.mesh.origin(h)) + at(m.mesh.target(h));
+    return {sum.x / 2, sum.y / 2};
 }
 
-double Refiner::splitGain(EdgeId e) const {
+double Refiner::splitCost(EdgeId e) const {
+    if (m.curve(e)) return kNever;
     const HalfedgeId h = HalfedgeMesh::halfedge(e);
     const LatticePoint p = middle(e);
     double before = 0, after = 0;
     for (const HalfedgeId s : {h, HalfedgeMesh::twin(h)}) {
         if (!m.mesh.face(s).valid()) continue;
-        const LatticePoint a = at(m.mesh.origin(s)), b = at(m.mesh.target(s)),
-                           c = at(m.mesh.target(m.mesh.next(s)));
-        if (!wellShaped(a, p, c) || !wellShaped(p, b, c)) return kNever;
+        const HalfedgeId s1 = m.mesh.next(s), s2 = m.mesh.next(s1);
+        const VertexId a = m.mesh.origin(s), b = m.mesh.origin(s1), c = m.mesh.origin(s2);
+        const Triangle first{
+            {at(a), p, at(c)}, {nullptr, nullptr, m.curve(HalfedgeMesh::edge(s2))}, {a, VertexId(), c}};
+        const Triangle second{
+            {p, at(b), at(c)}, {nullptr, m.curve(HalfedgeMesh::edge(s1)), nullptr}, {VertexId(), b, c}};
+        const double least = std::min(leastShape(), shape(at(a), at(b), at(c)));
+        if (!valid(first, least) || !valid(second, least)) return kNever;
         before += mError[m.mesh.face(s).index];
-        after += triangleError(a, p, c) + triangleError(p, b, c);
+        after += error(first) + error(second);
     }
     return after - before;
 }
 
 void Refiner::splitTo(size_t faces) {
-    std::vector<double> gains(m.mesh.edgeCapacity(), kNever);
-    parallelFor(gains.size(), 32, [&](size_t begin, size_t end) {
+    std::vector<double> costs(m.mesh.edgeCapacity(), kNever);
+    parallelFor(costs.size(), 32, [&](size_t begin, size_t end) {
         for (size_t e = begin; e < end; ++e)
-            if (m.mesh.alive(EdgeId(uint32_t(e)))) gains[e] = splitGain(EdgeId(uint32_t(e)));
+            if (m.mesh.alive(EdgeId(uint32_t(e)))) costs[e] = splitCost(EdgeId(uint32_t(e)));
     });
     std::vector<uint32_t> order;
-    for (uint32_t e = 0; e < gains.size(); ++e)
-        if (gains[e] < 0) order.push_back(e);
+    for (uint32_t e = 0; e < costs.size(); ++e)
+        if (costs[e] < 0) order.push_back(e);
     std::sort(order.begin(), order.end(),
-              [&](uint32_t a, uint32_t b) { return gains[a] != gains[b] ? gains[a] < gains[b] : a < b; });
+              [&](uint32_t a, uint32_t b) { return costs[a] != costs[b] ? costs[a] < costs[b] : a < b; });
     std::vector<uint8_t> touched(m.mesh.faceCapacity(), 0);
     std::vector<FaceId> changed;
     for (const uint32_t e : order) {
@@ -250,65 +440,60 @@ void Refiner::splitTo(size_t faces) {
             if (m.mesh.face(s).valid()) free = free && !touched[m.mesh.face(s).index];
         if (!free) continue;
         const bool border = m.mesh.onBorder(EdgeId(e));
-        const LatticePoint p = middle(EdgeId(e));
-        const VertexId v = m.mesh.split(EdgeId(e));
-        m.positions.push_back(p);
+        m.positions.push_back(middle(EdgeId(e)));
         m.kinds.push_back(border ? VertexKind::Border : VertexKind::Interior);
+        const VertexId v = m.mesh.split(EdgeId(e));
         touched.resize(m.mesh.faceCapacity(), 0);
-        m.mesh.forEachOutgoing(v, [&](HalfedgeId o) {
-            if (!m.mesh.face(o).valid()) return;
-            touched[m.mesh.face(o).index] = 1;
-            changed.push_back(m.mesh.face(o));
+        m.mesh.forEachOutgoing(v, [&](HalfedgeId out) {
+            if (!m.mesh.face(out).valid()) return;
+            touched[m.mesh.face(out).index] = 1;
+            changed.push_back(m.mesh.face(out));
         });
     }
-    mError.resize(m.mesh.faceCapacity(), 0);
-    parallelFor(changed.size(), 8, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) updateFace(changed[i]);
-    });
+    m.curveOfEdge.resize(m.mesh.edgeCapacity(), -1);
+    updateFaces(changed);
 }
 
 bool Refiner::tryMove(VertexId v, double step) {
-    static constexpr int kDirections[8][2] = {{1, 0}, {0, 1},  {-1, 0},  {0, -1},
-                                              {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
-    double before = 0, area = 0;
-    size_t count = 0;
+    constexpr double kDiagonal = .70710678118654752440;
+    static constexpr double kDirections[8][2] = {{1, 0},
+                                                 {0, 1},
+                                                 {-1, 0},
+                                                 {0, -1},
+                                                 {kDiagonal, kDiagonal},
+                                                 {-kDiagonal, kDiagonal},
+                                                 {-kDiagonal, -kDiagonal},
+                                                 {kDiagonal, -kDiagonal}};
+    const double before = errorAround(v), least = worstShapeAround(v);
+    double area = 0;
+    std::vector<Triangle> star;
     m.mesh.forEachOutgoing(v, [&](HalfedgeId h) {
         if (!m.mesh.face(h).valid()) return;
-        before += mError[m.mesh.face(h).index];
-        area += double(cross(at(m.mesh.target(h)) - at(v), at(m.mesh.target(m.mesh.next(h))) - at(v)));
-        ++count;
+        const HalfedgeId across = m.mesh.next(h);
+        const VertexId a = m.mesh.target(h), b = m.mesh.target(across);
+        star.push_back(
+            {{at(v), at(a), at(b)}, {nullptr, m.curve(HalfedgeMesh::edge(across)), nullptr}, {v, a, b}});
+        area += double(cross(at(a) - at(v), at(b) - at(v)));
     });
-    if (before <= 0) return false;
-    const double length = step * std::sqrt(area / double(count));
+    const double length = step * std::sqrt(area / double(star.size()));
     const LatticePoint from = at(v);
     double best = before * (1 - 1e-6);
     LatticePoint to = from;
     for (const auto& d : kDirections) {
-        const double norm = d[0] && d[1] ? .70710678 : 1;
-        const LatticePoint p{from.x + int32_t(std::lround(length * norm * d[0])),
-                             from.y + int32_t(std::lround(length * norm * d[1]))};
-        if (p == from) continue;
-        if (m.kinds[v.index] == VertexKind::Border) {
-            bool along = true;
-            m.mesh.forEachOutgoing(v, [&](HalfedgeId h) {
-                if (m.mesh.onBorder(HalfedgeMesh::edge(h)))
-                    along = along && cross(p - from, at(m.mesh.target(h)) - from) == 0;
-            });
-            if (!along) continue;
+        const LatticePoint p{from.x + int32_t(std::lround(length * d[0])),
+                             from.y + int32_t(std::lround(length * d[1]))};
+        if (p == from || (m.kinds[v.index] == VertexKind::Border && !staysOnSide(v, p))) continue;
+        bool good = true;
+        for (Triangle& t : star) {
+            t.corners[0] = p;
+            good = good && valid(t, least);
         }
-        bool valid = true;
-        m.mesh.forEachOutgoing(v, [&](HalfedgeId h) {
-            if (valid && m.mesh.face(h).valid())
-                valid = wellShaped(p, at(m.mesh.target(h)), at(m.mesh.target(m.mesh.next(h))));
-        });
-        if (!valid) continue;
         double after = 0;
-        m.mesh.forEachOutgoing(v, [&](HalfedgeId h) {
-            if (!valid || !m.mesh.face(h).valid()) return;
-            after += triangleError(p, at(m.mesh.target(h)), at(m.mesh.target(m.mesh.next(h))));
-            valid = after < best;
-        });
-        if (!valid) continue;
+        for (size_t i = 0; good && i < star.size(); ++i) {
+            after += error(star[i]);
+            good = after < best;
+        }
+        if (!good) continue;
         best = after;
         to = p;
     }
@@ -320,22 +505,22 @@ bool Refiner::tryMove(VertexId v, double step) {
     return true;
 }
 
-size_t Refiner::movePass(double step) {
+size_t Refiner::move(double step) {
+    // Vertices of one colour are no neighbours, so that their stars share no face.
     std::vector<uint8_t> colour(m.mesh.vertexCapacity(), 0);
     std::vector<std::vector<VertexId>> classes;
     for (uint32_t v = 0; v < colour.size(); ++v) {
         if (!m.mesh.alive(VertexId(v))) continue;
         if (m.kinds[v] != VertexKind::Interior && m.kinds[v] != VertexKind::Border) continue;
-        uint64_t used = 0;
-        m.mesh.forEachOutgoing(VertexId(v), [&](HalfedgeId h) {
-            const uint8_t c = colour[m.mesh.target(h).index];
-            if (c) used |= uint64_t(1) << (c - 1);
-        });
-        size_t c = 0;
-        while (used >> c & 1) ++c;
-        colour[v] = uint8_t(c + 1);
-        if (classes.size() <= c) classes.resize(c + 1);
-        classes[c].push_back(VertexId(v));
+        std::array<bool, 256> used{};
+        m.mesh.forEachOutgoing(VertexId(v),
+                               [&](HalfedgeId h) { used[colour[m.mesh.target(h).index]] = true; });
+        size_t c = 1;
+        while (used[c] && c < 255) ++c;
+        if (used[c]) continue;
+        colour[v] = uint8_t(c);
+        if (classes.size() < c) classes.resize(c);
+        classes[c - 1].push_back(VertexId(v));
     }
     std::vector<uint8_t> moved(colour.size(), 0);
     for (const auto& vertices : classes)
@@ -343,6 +528,35 @@ size_t Refiner::movePass(double step) {
             for (size_t i = begin; i < end; ++i) moved[vertices[i].index] = tryMove(vertices[i], step);
         });
     return size_t(std::accumulate(moved.begin(), moved.end(), 0));
+}
+
+Result<CutMesh> refine(CutMesh cut, const PolynomialFit& fit, const VectorizeSettings& settings,
+                       StageReport& report, std::string& shortfall, Progress& progress) {
+    Refiner refiner(cut, fit, settings);
+    const auto wanted = size_t(settings.patches);
+    refiner.flip();
+    refiner.move(.15);
+    if (!refiner.collapseTo(wanted, progress)) return stopped();
+    // Rounds of paired splits and collapses, flips and moves.
+    const int rounds = settings.refineRounds;
+    constexpr double kSurplus = .3;
+    for (int round = 0; round < rounds; ++round) {
+        if (round > 0) {
+            refiner.splitTo(size_t(double(wanted) * (1 + kSurplus * (1 - double(round) / rounds))));
+            refiner.flip();
+            if (!refiner.collapseTo(wanted, progress)) return stopped();
+        }
+        for (const double step : {.2, .1}) {
+            refiner.flip();
+            refiner.move(step / (1 + .5 * round));
+            if (!progress.step(double(round) / rounds)) return stopped();
+        }
+    }
+    report.figures = {{"patches", double(refiner.faceCount())}};
+    if (refiner.faceCount() > wanted)
+        shortfall = "features pin the mesh at " + std::to_string(refiner.faceCount()) +
+                    " patches; ask for fewer features to go below";
+    return cut;
 }
 
 }  // namespace tessera

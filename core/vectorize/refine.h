@@ -1,62 +1,100 @@
-// The true-error stage: a triangulation is changed by collapses, splits, flips and moves of vertices, each
+// The true-error stage: the triangulation is changed by collapses, splits, flips and moves of vertices, each
 // judged by the squared error of the best polynomials over the triangles that it touches.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/image/image.h"
-#include "core/mesh/halfedge_mesh.h"
-#include "core/mesh/lattice.h"
-#include "core/vectorize/initial_mesh.h"
+#include "core/base/result.h"
+#include "core/vectorize/cut_mesh.h"
 #include "core/vectorize/polynomial_fit.h"
+#include "core/vectorize/settings.h"
 
 namespace tessera {
 
-struct WorkingMesh {
-    HalfedgeMesh mesh;
-    std::vector<LatticePoint> positions;  // by vertex
-    std::vector<VertexKind> kinds;        // by vertex
+// A half-edge collapse as it happened: enough to tell which vertex went where.
+struct RecordedCollapse {
+    VertexId vertex;
+    VertexId onto;
+    double cost = 0;  // growth of the squared error
 };
 
+// Changes `cut` and keeps its invariants: faces stay certified, features stay on their chains within
+// settings.featureTolerancePx, no angle falls below kMinAngleDegrees that was not below it before.
 class Refiner {
   public:
-    Refiner(WorkingMesh& work, const PolynomialFit& fit);
+    static constexpr double kMinAngleDegrees = 8;
 
-    double totalError() const;
+    // Keeps references. `fit` over the picture with hard features.
+    Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings);
+
     size_t faceCount() const { return m.mesh.faceCount(); }
-    size_t fits() const { return 0; }
+    // Sum over pixels and channels, as the polynomials have it.
+    double totalError() const;
 
+    // Collapses, cheapest first, until at most `faces` are left or nothing more can go. False where progress
+    // says stop.
     bool collapseTo(size_t faces, Progress& progress);
+    // Splits the edges that gain most until there are `faces` faces or no split gains.
     void splitTo(size_t faces);
-    size_t flipPass();
-    size_t movePass(double step);
+    // One pass each; returns how many changed.
+    size_t flip();
+    // Tries eight directions, `step` times the size of a face beside the vertex.
+    size_t move(double step);
 
   private:
+    // A triangle that is or could be: its corners, and for each side (from corner k) its curve.
     struct Triangle {
-        VertexId a, b, c;
+        std::array<LatticePoint, 3> corners;
+        std::array<const CutCurve*, 3> curves{};
+        std::array<VertexId, 3> vertices;
     };
-    // A change of the mesh and what it does to the total error.
     struct Option {
-        double gain = 0;
+        double cost;  // growth of the error; infinite where it cannot be done
         HalfedgeId halfedge;
     };
-    double triangleError(LatticePoint a, LatticePoint b, LatticePoint c) const;
-    bool wellShaped(LatticePoint a, LatticePoint b, LatticePoint c) const;
+    // The one curve that two become where a feature vertex goes.
+    struct Merge {
+        HalfedgeId before;  // leaves the vertex toward `beyond`
+        VertexId beyond;
+        CutCurve curve;
+    };
+
     LatticePoint at(VertexId v) const { return m.positions[v.index]; }
-    void updateFace(FaceId f);
+    Triangle triangle(FaceId f) const;
+    const CutCurve* curveBetween(VertexId a, VertexId b) const;
+    double error(const Triangle& t) const;
+    bool valid(const Triangle& t, double leastShape) const;
+    double worstShapeAround(VertexId v) const;
+    double errorAround(VertexId v) const;
+    void updateFace(FaceId f) { mError[f.index] = error(triangle(f)); }
+    void updateFaces(const std::vector<FaceId>& faces);
+    bool staysOnSide(VertexId v, LatticePoint to) const;
+
+    bool mayCollapse(HalfedgeId h) const;
+    std::optional<Merge> merge(HalfedgeId h) const;
+    std::array<bool, 2> keptSides(HalfedgeId h, const Merge& merge) const;
+    bool fansAfter(HalfedgeId h, const std::optional<Merge>& merge, std::vector<Triangle>& fans,
+                   double& before) const;
     Option bestCollapse(VertexId u) const;
-    Option flipGain(EdgeId e) const;
-    double splitGain(EdgeId e) const;
+    void collapse(HalfedgeId h, std::vector<FaceId>& changed, std::vector<VertexId>& dirty);
+    double flipCost(EdgeId e) const;
+    double splitCost(EdgeId e) const;
     LatticePoint middle(EdgeId e) const;
     bool tryMove(VertexId v, double step);
-    template <class Do>
-    void touchStar(VertexId v, Do&& visit) const;
 
-    WorkingMesh& m;
+    CutMesh& m;
     const PolynomialFit& mFit;
+    double mTolerancePx;
     std::vector<double> mError;  // by face
 };
+
+// Stage "simplify", variant "true-error": from the initial triangulation to settings.patches faces.
+Result<CutMesh> refine(CutMesh cut, const PolynomialFit& fit, const VectorizeSettings& settings,
+                       StageReport& report, std::string& shortfall, Progress& progress);
 
 }  // namespace tessera

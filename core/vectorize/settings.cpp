@@ -37,6 +37,11 @@ const std::array kNumbers{
     NumberKey{"weightNegative", &S::weightNegative, 0, 1'000},
     NumberKey{"weightDistance", &S::weightDistance, 0, 1'000},
     NumberKey{"samplesPerSide", &S::samplesPerSide, 2, 200},
+    NumberKey{"featureBudget", &S::featureBudget, 0, 1'000'000},
+    NumberKey{"refineRounds", &S::refineRounds, 0, 1'000},
+    NumberKey{"termsPerPatch", &S::termsPerPatch, 9, 160},
+    NumberKey{"seamWeight", &S::seamWeight, 0, 1'000'000},
+    NumberKey{"seamGradientWeight", &S::seamGradientWeight, 0, 1'000'000},
 };
 
 // The shortest text that reads back as the same number, in every locale.

@@ -42,6 +42,13 @@ struct VectorizeSettings {
     // Colours (4.4).
     int samplesPerSide = 10;  // n
 
+    // The default method.
+    double featureBudget = 4;   // px of features to be cut for each patch wanted
+    int refineRounds = 5;       // of the true-error stage
+    double termsPerPatch = 48;  // of the colour splines, over all channels, on the average
+    double seamWeight = 1;      // of a squared colour difference over a pixel of seam, against a pixel's
+    double seamGradientWeight = .01;  // the same of the difference a pixel off
+
     bool operator==(const VectorizeSettings&) const = default;
 };
 

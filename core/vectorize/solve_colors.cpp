@@ -16,6 +16,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Eigen::VectorXf;
 
+// A pixel's square is sampled at 2 x 2 points, as the renderer does at x1.
+constexpr int kSamplesPerSide = 2;
+
 // By patch id; empty where there is no patch.
 using PatchVectors = std::vector<VectorXd>;
 
@@ -99,9 +102,9 @@ class ChannelSystem {
 };
 
 // Preconditioned conjugate gradients, until the residual is kTolerance of that of the patches by themselves.
-PatchVectors conjugateGradients(ChannelSystem& system, int maxIterations, int& iterations,
-                                Progress& progress) {
+PatchVectors conjugateGradients(ChannelSystem& system, int& iterations, Progress& progress) {
     constexpr double kTolerance = 1e-3;
+    constexpr int kMaxIterations = 60;
     const size_t count = system.right().size();
     PatchVectors x(count), r(count), z(count), d(count), ad(count);
     system.precondition(system.right(), x);
@@ -111,7 +114,7 @@ PatchVectors conjugateGradients(ChannelSystem& system, int maxIterations, int& i
     d = z;
     double rz = dot(r, z);
     const double enough = kTolerance * kTolerance * rz;
-    for (int i = 0; i < maxIterations && rz > enough && !progress.stopRequested(); ++i, ++iterations) {
+    for (int i = 0; i < kMaxIterations && rz > enough && !progress.stopRequested(); ++i, ++iterations) {
         system.apply(d, ad);
         const double alpha = rz / dot(d, ad);
         system.forPatches([&](size_t p) {
@@ -135,19 +138,20 @@ Image inOpponentBasis(Image image) {
 }  // namespace
 
 Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& sharp,
-                              const ColorSolveOptions& options, StageReport& report, Progress& progress) {
-    const std::vector<SiteChoice> choices =
-        chooseSites(mesh, inOpponentBasis(sharp), options.budget, progress);
+                              const VectorizeSettings& settings, StageReport& report, Progress& progress) {
+    const SiteBudget budget{settings.termsPerPatch};
+    const std::vector<SiteChoice> choices = chooseSites(mesh, inOpponentBasis(sharp), budget, progress);
     if (!progress.step(.3)) return stopped();
-    const ColorEquations equations = buildEquations(mesh, inOpponentBasis(image), choices, options.seams,
-                                                    options.samplesPerSide, progress);
+    const SeamWeights seams{settings.seamWeight, settings.seamGradientWeight};
+    const ColorEquations equations =
+        buildEquations(mesh, inOpponentBasis(image), choices, seams, kSamplesPerSide, progress);
     if (!progress.step(.6)) return stopped();
 
     std::array<PatchVectors, kMaxChannels> factors;
     int iterations = 0;
     for (int c = 0; c < mesh.channels(); ++c) {
         ChannelSystem system(equations, choices, c);
-        factors[size_t(c)] = conjugateGradients(system, options.maxIterations, iterations, progress);
+        factors[size_t(c)] = conjugateGradients(system, iterations, progress);
         if (!progress.step(.6 + .4 * (c + 1) / mesh.channels())) return stopped();
     }
     mesh.setColourBasis(ColourBasis::Opponent);

@@ -12,15 +12,9 @@
 
 namespace tessera {
 
-struct ColorSolveOptions {
-    SiteBudget budget;
-    SeamWeights seams;
-    int samplesPerSide = 2;
-    int maxIterations = 60;
-};
-
-// `sharp` is the picture without the blur of its features (virtual_sharp.h).
+// Stage "colours", variant "joint". `sharp` is the picture without the blur of its features
+// (virtual_sharp.h). The result is in the opponent basis.
 Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& sharp,
-                              const ColorSolveOptions& options, StageReport& report, Progress& progress);
+                              const VectorizeSettings& settings, StageReport& report, Progress& progress);
 
 }  // namespace tessera

@@ -10,32 +10,32 @@
 #include "core/vectorize/fit_colors.h"
 #include "core/vectorize/fit_curves.h"
 #include "core/vectorize/initial_mesh.h"
+#include "core/vectorize/polynomial_fit.h"
+#include "core/vectorize/refine.h"
 #include "core/vectorize/simplify.h"
+#include "core/vectorize/solve_colors.h"
+#include "core/vectorize/subpixel_features.h"
+#include "core/vectorize/virtual_sharp.h"
 
 namespace tessera {
 
-const std::vector<StageVariants>& stageTable() {
-    static const std::vector<StageVariants> table{
-        {"features", .03, {"canny", "none"}},
-        {"initial-mesh", .07, {"grid"}},
-        {"simplify", .60, {"quadric"}},
-        {"curves", .22, {"traced", "straight"}},
-        {"colours", .08, {"sampled", "sampled-nowarp"}},
-    };
-    return table;
-}
-
 namespace {
 
-// A method is a choice of one variant for each stage.
-const std::map<std::string, std::map<std::string, std::string>>& methods() {
-    static const std::map<std::string, std::map<std::string, std::string>> table{
+// A method is a list of stages, each with its variants.
+const std::map<std::string, std::vector<StageVariants>>& methods() {
+    static const std::map<std::string, std::vector<StageVariants>> table{
+        {"default",
+         {{"features", .06, {"subpixel", "none"}},
+          {"initial-mesh", .04, {"delaunay"}},
+          {"simplify", .60, {"true-error"}},
+          {"curves", .10, {"straight"}},
+          {"colours", .20, {"joint"}}}},
         {"paper",
-         {{"features", "canny"},
-          {"initial-mesh", "grid"},
-          {"simplify", "quadric"},
-          {"curves", "traced"},
-          {"colours", "sampled"}}},
+         {{"features", .03, {"canny", "none"}},
+          {"initial-mesh", .07, {"grid"}},
+          {"simplify", .60, {"quadric"}},
+          {"curves", .22, {"traced", "straight"}},
+          {"colours", .08, {"sampled", "sampled-nowarp"}}}},
     };
     return table;
 }
@@ -43,14 +43,14 @@ const std::map<std::string, std::map<std::string, std::string>>& methods() {
 // The stages of one run: starts each with its variant, times it and files its report.
 class StageRunner {
   public:
-    StageRunner(const std::map<std::string, std::string>& variants, Progress& progress,
-                VectorizeReport& report)
-        : mVariants(variants), mProgress(progress), mReport(report) {}
+    StageRunner(const std::string& method, const std::map<std::string, std::string>& variants,
+                Progress& progress, VectorizeReport& report)
+        : mStages(stageTable(method)), mVariants(variants), mProgress(progress), mReport(report) {}
 
     template <class Stage>
     auto operator()(const std::string& name, Stage&& stage) {
         double weight = 0;
-        for (const StageVariants& s : stageTable())
+        for (const StageVariants& s : mStages)
             if (s.stage == name) weight = s.weight;
         mProgress.beginStage(name, weight);
         StageReport report{name, mVariants.at(name), 0, {}};
@@ -62,17 +62,18 @@ class StageRunner {
     }
 
   private:
+    const std::vector<StageVariants>& mStages;
     const std::map<std::string, std::string>& mVariants;
     Progress& mProgress;
     VectorizeReport& mReport;
 };
 
 // Section 4, in order.
-Result<VectorImage> runStages(const Image& image, const VectorizeSettings& settings,
-                              const std::map<std::string, std::string>& variants, Progress& progress,
-                              const StageObserver& observe) {
+Result<VectorImage> runPaper(const Image& image, const VectorizeSettings& settings,
+                             const std::map<std::string, std::string>& variants, Progress& progress,
+                             const StageObserver& observe) {
     VectorImage result;
-    StageRunner run(variants, progress, result.report);
+    StageRunner run("paper", variants, progress, result.report);
     auto features =
         run("features", [&](StageReport& r) { return detectFeatures(image, settings, r, progress); });
     if (!features) return tl::unexpected(features.error());
@@ -104,18 +105,77 @@ Result<VectorImage> runStages(const Image& image, const VectorizeSettings& setti
     return result;
 }
 
+// The initial mesh has this many times the faces wanted.
+constexpr double kInitialSurplus = 3;
+
+// As many features as the mesh is to be cut along.
+Result<FeatureNetwork> findNetwork(const Image& image, const VectorizeSettings& settings,
+                                   const std::map<std::string, std::string>& variants, StageReport& report,
+                                   Progress& progress) {
+    if (variants.at("features") == "none") return FeatureNetwork{image.width(), image.height(), {}, {}, {}};
+    auto chains = detectSubpixelFeatures(image, settings, report, progress);
+    if (!chains) return tl::unexpected(chains.error());
+    auto selected = selectFeatures(std::move(*chains), settings.featureBudget * settings.patches);
+    auto network = buildFeatureNetwork(std::move(selected), image.width(), image.height(), settings,
+                                       progress.stopToken());
+    if (progress.stopRequested()) return stopped();
+    report.figures.emplace_back("segments", double(network.segments.size()));
+    return network;
+}
+
+// The default method: features cut out of their blur, a mesh by the true error of the fit, one joint solve.
+Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& settings,
+                               const std::map<std::string, std::string>& variants, Progress& progress,
+                               const StageObserver& observe) {
+    VectorImage result;
+    StageRunner run("default", variants, progress, result.report);
+    auto network =
+        run("features", [&](StageReport& r) { return findNetwork(image, settings, variants, r, progress); });
+    if (!network) return tl::unexpected(network.error());
+    if (observe.network) observe.network(*network);
+
+    const Image sharp = virtualSharp(image, *network, progress.stopToken());
+    auto cut = run("initial-mesh", [&](StageReport& r) {
+        return buildCutMesh(sharp, *network, size_t(kInitialSurplus * settings.patches), r, progress);
+    });
+    if (!cut) return tl::unexpected(cut.error());
+    if (observe.cutMesh) observe.cutMesh(*cut);
+
+    const PolynomialFit fit(sharp);
+    auto refined = run("simplify", [&](StageReport& r) {
+        return refine(std::move(*cut), fit, settings, r, result.report.shortfall, progress);
+    });
+    if (!refined) return tl::unexpected(refined.error());
+    PatchMesh mesh = toPatchMesh(*refined, image.channels());
+    if (observe.refined) observe.refined(mesh);
+
+    auto curved = run("curves", [&](StageReport&) -> Result<PatchMesh> { return std::move(mesh); });
+    if (!curved) return tl::unexpected(curved.error());
+    if (observe.curves) observe.curves(*curved);
+
+    auto coloured = run("colours", [&](StageReport& r) {
+        return solveColors(std::move(*curved), image, sharp, settings, r, progress);
+    });
+    if (!coloured) return tl::unexpected(coloured.error());
+    result.mesh = std::move(*coloured);
+    return result;
+}
+
 Result<std::map<std::string, std::string>> chosenVariants(const VectorizeSettings& settings) {
     const auto method = methods().find(settings.method);
     if (method == methods().end())
-        return failure(ErrorCode::Usage, "there is no method '" + settings.method + "'; use 'paper'");
-    auto variants = method->second;
+        return failure(ErrorCode::Usage,
+                       "there is no method '" + settings.method + "'; use 'default' or 'paper'");
+    std::map<std::string, std::string> variants;
+    for (const StageVariants& row : method->second) variants[row.stage] = row.variants.front();
     for (const auto& [stage, variant] : settings.stageVariants) {
-        const auto& table = stageTable();
+        const auto& table = method->second;
         const auto row = std::find_if(table.begin(), table.end(),
                                       [&name = stage](const StageVariants& s) { return s.stage == name; });
         if (row == table.end()) return failure(ErrorCode::Usage, "there is no stage '" + stage + "'");
         if (std::find(row->variants.begin(), row->variants.end(), variant) == row->variants.end())
-            return failure(ErrorCode::Usage, "stage '" + stage + "' has no variant '" + variant + "'");
+            return failure(ErrorCode::Usage, "stage '" + stage + "' of method '" + settings.method +
+                                                 "' has no variant '" + variant + "'");
         variants[stage] = variant;
     }
     return variants;
@@ -123,9 +183,13 @@ Result<std::map<std::string, std::string>> chosenVariants(const VectorizeSetting
 
 }  // namespace
 
+const std::vector<StageVariants>& stageTable(const std::string& method) {
+    return methods().at(method);
+}
+
 std::vector<std::string> methodNames() {
     std::vector<std::string> names;
-    for (const auto& [name, variants] : methods()) names.push_back(name);
+    for (const auto& [name, stages] : methods()) names.push_back(name);
     return names;
 }
 
@@ -136,7 +200,10 @@ Result<VectorImage> vectorize(const Image& image, const VectorizeSettings& setti
     const auto variants = chosenVariants(settings);
     if (!variants) return tl::unexpected(variants.error());
     Result<VectorImage> result;
-    withThreads(settings.threads, [&] { result = runStages(image, settings, *variants, progress, observe); });
+    withThreads(settings.threads, [&] {
+        const auto run = settings.method == "paper" ? runPaper : runDefault;
+        result = run(image, settings, *variants, progress, observe);
+    });
     return result;
 }
 

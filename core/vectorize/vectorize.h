@@ -9,6 +9,8 @@
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/mesh/patch_mesh.h"
+#include "core/vectorize/cut_mesh.h"
+#include "core/vectorize/feature_network.h"
 #include "core/vectorize/features.h"
 #include "core/vectorize/initial_mesh.h"
 #include "core/vectorize/settings.h"
@@ -21,13 +23,15 @@ struct VectorImage {
     VectorizeReport report;
 };
 
-// A stage of the driver: its name, about which part of the time it takes, and the variants that exist.
+// A stage of a method: its name, about which part of the time it takes, and its variants, the usual one
+// first.
 struct StageVariants {
     std::string stage;
     double weight;
     std::vector<std::string> variants;
 };
-const std::vector<StageVariants>& stageTable();
+// The stages of a method in order; their names are the same for all methods. The method must exist.
+const std::vector<StageVariants>& stageTable(const std::string& method);
 
 // What VectorizeSettings::method may be.
 std::vector<std::string> methodNames();
@@ -35,10 +39,16 @@ std::vector<std::string> methodNames();
 // Looks at what each stage hands to the next (the pictures of Fig. 2 are made from it); any of them may be
 // empty.
 struct StageObserver {
+    // Method "paper".
     std::function<void(const std::vector<PixelChain>&)> features;
     std::function<void(const ChannelMeshes&)> initialMesh;
     std::function<void(const BaseDomain&)> baseDomain;
     std::function<void(const PatchMesh&)> initialCurves;  // patches may fold
+    // Method "default".
+    std::function<void(const FeatureNetwork&)> network;
+    std::function<void(const CutMesh&)> cutMesh;
+    std::function<void(const PatchMesh&)> refined;
+    // Both.
     std::function<void(const PatchMesh&)> curves;
 };
 

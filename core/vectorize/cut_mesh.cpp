@@ -1,0 +1,281 @@
+// See cut_mesh.h.
+#include "core/vectorize/cut_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/mesh/delaunay.h"
+#include "core/mesh/jacobian.h"
+
+namespace tessera {
+
+namespace {
+
+// Per pixel the standard deviation of brightness around it, to a power below one: how many points it
+// deserves.
+std::vector<float> richness(const Image& image) {
+    constexpr int kRadius = 6;
+    constexpr double kFloor = 1.0 / 255, kPower = .5;
+    const int width = image.width(), height = image.height();
+    // Sums over a window by running sums: along rows, then along columns.
+    const size_t size = image.planeSize();
+    std::vector<float> first(size), second(size), density(size);
+    parallelFor(size_t(height), 8, [&](size_t begin, size_t end) {
+        for (size_t y = begin; y < end; ++y) {
+            const size_t row = y * size_t(width);
+            const auto value = [&](int x) {
+                float sum = 0;
+                for (int c = 0; c < 3; ++c) sum += image.plane(c)[row + size_t(x)];
+                return double(sum) / 3;
+            };
+            double a = 0, b = 0;
+            for (int x = -kRadius; x < width; ++x) {
+                if (x + kRadius < width) {
+                    const double v = value(x + kRadius);
+                    a += v;
+                    b += v * v;
+                }
+                if (x - kRadius - 1 >= 0) {
+                    const double v = value(x - kRadius - 1);
+                    a -= v;
+                    b -= v * v;
+                }
+                if (x < 0) continue;
+                first[row + size_t(x)] = float(a);
+                second[row + size_t(x)] = float(b);
+            }
+        }
+    });
+    parallelFor(size_t(width), 64, [&](size_t begin, size_t end) {
+        for (size_t x = begin; x < end; ++x) {
+            double a = 0, b = 0;
+            const auto at = [&](int y) { return size_t(y) * size_t(width) + x; };
+            for (int y = -kRadius; y < height; ++y) {
+                if (y + kRadius < height) {
+                    a += double(first[at(y + kRadius)]);
+                    b += double(second[at(y + kRadius)]);
+                }
+                if (y - kRadius - 1 >= 0) {
+                    a -= double(first[at(y - kRadius - 1)]);
+                    b -= double(second[at(y - kRadius - 1)]);
+                }
+                if (y < 0) continue;
+                const auto extent = [=](int i, int n) {
+                    return std::min(n - 1, i + kRadius) - std::max(0, i - kRadius) + 1;
+                };
+                const double n = double(extent(int(x), width)) * extent(y, height), mean = a / n;
+                const double variance = std::max(0.0, b / n - mean * mean);
+                density[at(y)] = float(std::pow(variance + kFloor * kFloor, .5 * kPower));
+            }
+        }
+    });
+    return density;
+}
+
+// Pixels too near to a feature for a point of their own: beside the curve, or between it and its chord.
+std::vector<uint8_t> keptFree(const FeatureNetwork& network, int width, int height) {
+    constexpr double kClearance = 1.6, kStep = .5;
+    std::vector<uint8_t> taken(size_t(width) * size_t(height), 0);
+    const auto mark = [&](glm::dvec2 p) {
+        const int x0 = std::max(0, int(p.x - kClearance)), x1 = std::min(width - 1, int(p.x + kClearance));
+        const int y0 = std::max(0, int(p.y - kClearance)), y1 = std::min(height - 1, int(p.y + kClearance));
+        for (int y = y0; y <= y1; ++y)
+            for (int x = x0; x <= x1; ++x) {
+                const double dx = x + .5 - p.x, dy = y + .5 - p.y;
+                if (dx * dx + dy * dy < kClearance * kClearance)
+                    taken[size_t(y) * size_t(width) + size_t(x)] = 1;
+            }
+    };
+    for (const FeatureSegment& s : network.segments) {
+        const BezierCurve curve = curveOf(network, s);
+        const int steps = std::max(2, int(curve.length() / kStep));
+        for (int i = 0; i <= steps; ++i) {
+            const double t = double(i) / steps;
+            const glm::dvec2 on = curve.at(t), off = curve.p[0] + t * (curve.p[3] - curve.p[0]) - on;
+            const int across = 1 + int(std::sqrt(off.x * off.x + off.y * off.y) / kStep);
+            for (int k = 0; k <= across; ++k) mark(on + double(k) / across * off);
+        }
+    }
+    return taken;
+}
+
+// Error diffusion (Floyd and Steinberg 1976) row by row, back and forth: pixels that get a point.
+std::vector<LatticePoint> diffuse(const std::vector<float>& density, const std::vector<uint8_t>& taken,
+                                  int width, int height, double points) {
+    double sum = 0;
+    for (size_t i = 0; i < density.size(); ++i) sum += taken[i] ? 0 : double(density[i]);
+    const double scale = sum > 0 ? points / sum : 0;
+    std::vector<double> row(size_t(width) + 2, 0), next(row);
+    std::vector<LatticePoint> result;
+    for (int y = 0; y < height; ++y) {
+        const int step = y % 2 == 0 ? 1 : -1;
+        for (int k = 0; k < width; ++k) {
+            const int x = step > 0 ? k : width - 1 - k;
+            const size_t i = size_t(y) * size_t(width) + size_t(x), at = size_t(x) + 1;
+            const double value = taken[i] ? row[at] : row[at] + scale * double(density[i]);
+            const bool chosen = value >= .5 && !taken[i];
+            if (chosen)
+                result.push_back({x * kLatticePerPixel + kLatticePerPixel / 2,
+                                  y * kLatticePerPixel + kLatticePerPixel / 2});
+            const double error = value - (chosen ? 1 : 0);
+            row[size_t(int(at) + step)] += 7 / 16.0 * error;
+            next[size_t(int(at) - step)] += 3 / 16.0 * error;
+            next[at] += 5 / 16.0 * error;
+            next[size_t(int(at) + step)] += 1 / 16.0 * error;
+        }
+        row.swap(next);
+        std::fill(next.begin(), next.end(), 0);
+    }
+    return result;
+}
+
+// Points on the picture's sides, about as far apart as those inside.
+std::vector<LatticePoint> borderPoints(int width, int height, double points) {
+    std::vector<LatticePoint> result;
+    const double spacing = std::sqrt(double(width) * height / std::max(1.0, points)) * 1.4;
+    const int w = width * kLatticePerPixel, h = height * kLatticePerPixel;
+    const auto steps = [&](int side) { return std::max(1, int(side / spacing)); };
+    for (int i = 1, n = steps(width); i < n; ++i)
+        for (const int y : {0, h}) result.push_back({int(int64_t(w) * i / n), y});
+    for (int i = 1, n = steps(height); i < n; ++i)
+        for (const int x : {0, w}) result.push_back({x, int(int64_t(h) * i / n)});
+    return result;
+}
+
+// Where a curve leaves a patch beside it without a certificate it is pulled toward its chord, in the end onto
+// it, which always has one.
+size_t straighten(CutMesh& cut) {
+    constexpr int kPulls = 4;
+    std::vector<int> pulls(cut.curves.size(), 0);
+    while (true) {
+        std::vector<uint32_t> bad;
+        for (uint32_t f = 0; f < cut.mesh.faceCapacity(); ++f) {
+            LatticeTriangle t;
+            bool curved = false;
+            size_t s = 0;
+            for (const HalfedgeId h : cut.mesh.sides(FaceId(f))) {
+                const VertexId a = cut.mesh.origin(h), b = cut.mesh.target(h);
+                const LatticePoint pa = cut.positions[a.index], pb = cut.positions[b.index];
+                const auto inner = straightControlPoints(pa, pb);
+                std::array<LatticePoint, 4> side{pa, inner[0], inner[1], pb};
+                if (const CutCurve* c = cut.curve(HalfedgeMesh::edge(h))) {
+                    side = c->controlPoints(a, cut.positions);
+                    curved = true;
+                }
+                for (size_t i = 0; i < 3; ++i) t.p[3 * s + i] = side[i];
+                ++s;
+            }
+            if (!curved) continue;
+            t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
+            if (certifiedInterior(t)) continue;
+            for (const HalfedgeId h : cut.mesh.sides(FaceId(f)))
+                if (cut.curve(HalfedgeMesh::edge(h)))
+                    bad.push_back(uint32_t(cut.curveOfEdge[HalfedgeMesh::edge(h).index]));
+        }
+        std::sort(bad.begin(), bad.end());
+        bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+        for (const uint32_t i : bad) {
+            CutCurve& c = cut.curves[i];
+            ++pulls[i];
+            const auto chord = straightControlPoints(cut.positions[c.from.index], cut.positions[c.to.index]);
+            for (size_t k = 0; k < 2; ++k)
+                c.inner[k] = pulls[i] >= kPulls ? chord[k]
+                                                : LatticePoint{(c.inner[k].x + chord[k].x) / 2,
+                                                               (c.inner[k].y + chord[k].y) / 2};
+        }
+        if (bad.empty()) break;
+    }
+    return size_t(std::count_if(pulls.begin(), pulls.end(), [](int n) { return n > 0; }));
+}
+
+VertexKind kindOf(FeatureNodeKind kind) {
+    return kind == FeatureNodeKind::Smooth ? VertexKind::Feature : VertexKind::FeatureEnd;
+}
+
+}  // namespace
+
+std::array<LatticePoint, 4> CutCurve::controlPoints(VertexId a,
+                                                    const std::vector<LatticePoint>& positions) const {
+    if (a == from) return {positions[from.index], inner[0], inner[1], positions[to.index]};
+    return {positions[to.index], inner[1], inner[0], positions[from.index]};
+}
+
+Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, size_t faces,
+                             StageReport& report, Progress& progress) {
+    const int width = sharp.width(), height = sharp.height();
+    const LatticePoint extent{width * kLatticePerPixel, height * kLatticePerPixel};
+    CutMesh cut;
+    cut.width = width;
+    cut.height = height;
+    cut.chains = network.chains;
+
+    Delaunay delaunay(extent);
+    std::vector<VertexId> vertexOfNode;
+    for (const FeatureNode& node : network.nodes) vertexOfNode.push_back(delaunay.insert(node.position));
+    size_t refused = 0;
+    for (const FeatureSegment& s : network.segments) {
+        const VertexId a = vertexOfNode[s.from], b = vertexOfNode[s.to];
+        if (a.valid() && b.valid() && a != b && delaunay.constrain(a, b).valid())
+            cut.curves.push_back({a, b, s.chain, s.first, s.last, s.inner, s.sigma});
+        else
+            ++refused;
+    }
+    if (!progress.step(.3)) return stopped();
+    const double points = std::max(0.0, double(faces) / 2 - double(network.nodes.size()));
+    for (const LatticePoint p : borderPoints(width, height, double(faces) / 2)) delaunay.insert(p);
+    size_t count = 0;
+    for (const LatticePoint p :
+         diffuse(richness(sharp), keptFree(network, width, height), width, height, points)) {
+        if (++count % 1024 == 0 && !progress.step(.3 + .6 * double(count) / std::max(1.0, points)))
+            return stopped();
+        delaunay.insert(p);
+    }
+
+    cut.mesh = delaunay.mesh();
+    cut.positions = delaunay.positions();
+    for (const LatticePoint p : cut.positions) {
+        const bool x = p.x == 0 || p.x == extent.x, y = p.y == 0 || p.y == extent.y;
+        cut.kinds.push_back(x && y ? VertexKind::Corner : x || y ? VertexKind::Border : VertexKind::Interior);
+    }
+    for (size_t i = 0; i < network.nodes.size(); ++i)
+        if (vertexOfNode[i].valid() && cut.kinds[vertexOfNode[i].index] != VertexKind::Corner)
+            cut.kinds[vertexOfNode[i].index] = kindOf(network.nodes[i].kind);
+    cut.curveOfEdge.assign(cut.mesh.edgeCapacity(), -1);
+    for (size_t i = 0; i < cut.curves.size(); ++i)
+        cut.curveOfEdge[HalfedgeMesh::edge(cut.mesh.find(cut.curves[i].from, cut.curves[i].to)).index] =
+            int32_t(i);
+    const size_t straightened = straighten(cut);
+    report.figures = {{"faces", double(cut.mesh.faceCount())},
+                      {"feature edges", double(cut.curves.size())},
+                      {"feature edges refused", double(refused)},
+                      {"feature edges straightened", double(straightened)}};
+    return cut;
+}
+
+PatchMesh toPatchMesh(const CutMesh& cut, int channels) {
+    const auto compact = cut.mesh.compacted();
+    std::vector<LatticePoint> positions;
+    for (const VertexId v : compact.oldVertex) positions.push_back(cut.positions[v.index]);
+    PatchMesh mesh(cut.width, cut.height, channels, compact.mesh, positions);
+    for (uint32_t e = 0; e < compact.oldEdge.size(); ++e) {
+        const CutCurve* c = cut.curve(compact.oldEdge[e]);
+        if (!c) continue;
+        const VertexId from = compact.oldVertex[compact.mesh.origin(HalfedgeMesh::halfedge(EdgeId(e))).index];
+        const auto p = c->controlPoints(from, cut.positions);
+        auto sigma = c->sigma;
+        if (from != c->from) std::swap(sigma[0], sigma[1]);
+        mesh.setCurve(EdgeId(e), {p[1], p[2], true, sigma});
+    }
+    mesh.forEachPatch([&](PatchId p) {
+        LatticeTriangle t = mesh.controlPoints(p);
+        t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
+        const auto interior = certifiedInterior(t);
+        TESSERA_CHECK(interior);
+        mesh.setInterior(p, *interior);
+    });
+    return mesh;
+}
+
+}  // namespace tessera
