@@ -191,14 +191,15 @@ void EquationBuilder::addSide(HalfedgeId h, size_t samples, uint32_t firstRow, d
     const bool reversed = HalfedgeMesh::halfedge(HalfedgeMesh::edge(h)) != h;
     const BezierTriangle t = toPixels(mMesh.controlPoints(p));
     const BezierCurve curve = toPixels(mMesh.controlPoints(HalfedgeMesh::halfedge(HalfedgeMesh::edge(h))));
-    const double spacing = curve.length() / double(samples);
-    const double w0 = sign * std::sqrt(weights.colour * spacing),
-                 w1 = sign * std::sqrt(weights.gradient * spacing);
+    const double spacing = curve.length() / double(samples - 1);
     const auto n = size_t(m.patches[p.index].count);
     std::vector<double> value(n), dx(n), dy(n);
     const uint32_t stride = weights.gradient > 0 ? 2 : 1;
     for (uint32_t i = 0; i < samples; ++i) {
-        const double along = (double(i) + .5) / double(samples), s = reversed ? 1 - along : along;
+        const double along = double(i) / double(samples - 1), s = reversed ? 1 - along : along;
+        const double share = i == 0 || i + 1 == samples ? .5 * spacing : spacing;
+        const double w0 = sign * std::sqrt(weights.colour * share);
+        const double w1 = sign * std::sqrt(weights.gradient * share);
         Barycentric b(0);
         b[side] = 1 - s;
         b[(side + 1) % 3] = s;
@@ -237,8 +238,11 @@ void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
         const double length = toPixels(mMesh.controlPoints(h)).length();
         const auto samples = size_t(std::clamp(int(length * kSamplesPerPx), kLeast, kMost));
         seams.push_back({h, samples, rows});
-        rows += uint32_t(samples) * (weights.gradient > 0 ? 2 : 1);
+        const uint32_t count = uint32_t(samples) * (weights.gradient > 0 ? 2 : 1);
+        m.seams.push_back({rows, count, length / double(samples - 1), weights.colour});
+        rows += count;
     });
+    m.seamStride = weights.gradient > 0 ? 2 : 1;
     const size_t first = mParts.size();
     mParts.resize(first + seams.size());
     parallelFor(seams.size(), 16, [&](size_t begin, size_t end) {
@@ -278,6 +282,7 @@ void EquationBuilder::finish() {
     for (uint32_t row = 0; row < rows; ++row)
         if (pixelOfRow[row] < m.pixelRows)
             for (int c = 0; c < mMesh.channels(); ++c) m.targets(row, c) = mPicture.plane(c)[pixelOfRow[row]];
+    for (ColorEquations::Seam& seam : m.seams) seam.firstRow = number[seam.firstRow];
     m.pixelRows =
         uint32_t(std::lower_bound(pixelOfRow.begin(), pixelOfRow.end(), m.pixelRows) - pixelOfRow.begin());
 

@@ -39,6 +39,19 @@ struct ColorEquations {
     std::vector<Entry> entries;
     Eigen::MatrixXf targets;  // (rows x channels)
     uint32_t pixelRows = 0;   // rows from here on are of seams
+    // The rows of one edge, at points evenly spaced from end to end: colours, or by turns colours and
+    // gradients. The square of what a row of colours comes to is weight * length * difference^2.
+    struct Seam {
+        uint32_t firstRow, rowCount;
+        double spacing;  // px; the ends have half as much length
+        double weight;
+
+        double length(uint32_t row, uint32_t stride) const {
+            return row == 0 || row + stride >= rowCount ? .5 * spacing : spacing;
+        }
+    };
+    std::vector<Seam> seams;
+    uint32_t seamStride = 1;  // 2 where there are rows of gradients
 };
 
 struct SeamWeights {

@@ -40,7 +40,8 @@ const std::array kNumbers{
     NumberKey{"featureBudget", &S::featureBudget, 0, 1'000'000},
     NumberKey{"refineRounds", &S::refineRounds, 0, 1'000},
     NumberKey{"termsPerPatch", &S::termsPerPatch, 9, 160},
-    NumberKey{"seamWeight", &S::seamWeight, 0, 1'000'000},
+    NumberKey{"seamMeanLevels", &S::seamMeanLevels, .01, 1'000},
+    NumberKey{"seamHighLevels", &S::seamHighLevels, .01, 1'000},
     NumberKey{"seamGradientWeight", &S::seamGradientWeight, 0, 1'000'000},
 };
 

@@ -24,7 +24,7 @@ struct VectorizeSettings {
     double cannyLow = .05;
     double cannyHigh = .125;
     int minChainPixels = 10;
-    double featureTolerancePx = .3;  // of the cubics of subpixel features to their points
+    double featureTolerancePx = .5;  // of the cubics of subpixel features to their points
 
     // Initial mesh (4.1): Taubin fairing of colours within this distance of features; 0 is off.
     double fairingRadiusPx = 0;
@@ -43,11 +43,14 @@ struct VectorizeSettings {
     int samplesPerSide = 10;  // n
 
     // The default method.
-    double featureBudget = 4;   // px of features to be cut for each patch wanted
+    double featureBudget = .2;  // feature edges for each patch wanted, at most
     int refineRounds = 5;       // of the true-error stage
     double termsPerPatch = 48;  // of the colour splines, over all channels, on the average
-    double seamWeight = 1;      // of a squared colour difference over a pixel of seam, against a pixel's
-    double seamGradientWeight = .01;  // the same of the difference a pixel off
+    // Along edges that are no features the colours of both sides differ by so many levels (of 255) on the
+    // mean, and by so many at the 95th percentile, at most.
+    double seamMeanLevels = 2.8;
+    double seamHighLevels = 8.5;
+    double seamGradientWeight = .005;  // of a squared difference a pixel off, against that on the edge
 
     bool operator==(const VectorizeSettings&) const = default;
 };

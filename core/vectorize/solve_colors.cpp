@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/parallel.h"
@@ -19,6 +20,12 @@ using Eigen::VectorXf;
 // A pixel's square is sampled at 2 x 2 points, as the renderer does at x1.
 constexpr int kSamplesPerSide = 2;
 
+// The weight of seams is found in so many solutions, each from the one before.
+constexpr int kSeamPasses = 4;
+static double env(const char*n,double d){return getenv(n)?atof(getenv(n)):d;}
+const double kFirstTolerance = env("T1", 1e-2), kTolerance = env("T2", 3e-3);
+constexpr double kLeastSeamWeight = .05, kMostSeamWeight = 50;
+
 // By patch id; empty where there is no patch.
 using PatchVectors = std::vector<VectorXd>;
 
@@ -32,8 +39,11 @@ double dot(const PatchVectors& a, const PatchVectors& b) {
 // The normal equations of one channel, A x = b, with patches' first terms alone.
 class ChannelSystem {
   public:
-    ChannelSystem(const ColorEquations& equations, const std::vector<SiteChoice>& choices, int channel)
+    // `weights` of the rows' squares.
+    ChannelSystem(const ColorEquations& equations, const std::vector<SiteChoice>& choices,
+                  const VectorXf& weights, int channel)
         : m(equations),
+          mWeights(weights),
           mTerms(equations.patches.size(), 0),
           mFactors(equations.patches.size()),
           mPartial(equations.patches.size()),
@@ -44,12 +54,14 @@ class ChannelSystem {
                 const auto& patch = m.patches[p];
                 if (patch.count == 0) continue;
                 const int n = mTerms[p] = choices[p].terms[size_t(channel)];
-                VectorXf targets(Eigen::Index(patch.rowIds.size()));
-                for (size_t i = 0; i < patch.rowIds.size(); ++i)
-                    targets(Eigen::Index(i)) = m.targets(patch.rowIds[i], channel);
+                VectorXf targets(Eigen::Index(patch.rowIds.size())), rowWeights(targets.size());
+                for (size_t i = 0; i < patch.rowIds.size(); ++i) {
+                    rowWeights(Eigen::Index(i)) = mWeights(patch.rowIds[i]);
+                    targets(Eigen::Index(i)) = mWeights(patch.rowIds[i]) * m.targets(patch.rowIds[i], channel);
+                }
                 const auto rows = patch.rows.leftCols(n);
                 mRight[p] = patch.moments.col(channel).head(n) + (rows.transpose() * targets).cast<double>();
-                const Eigen::MatrixXf own = rows.transpose() * rows;
+                const Eigen::MatrixXf own = rows.transpose() * rowWeights.asDiagonal() * rows;
                 mFactors[p].compute(patch.gram.topLeftCorner(n, n) + own.cast<double>());
             }
         });
@@ -69,7 +81,7 @@ class ChannelSystem {
                 float sum = 0;
                 for (uint32_t i = m.firstEntry[row]; i < m.firstEntry[row + 1]; ++i)
                     sum += mPartial[m.entries[i].patch](m.entries[i].place);
-                mTotals(Eigen::Index(row)) = sum;
+                mTotals(Eigen::Index(row)) = mWeights(Eigen::Index(row)) * sum;
             }
         });
         forPatches([&](size_t p) {
@@ -92,8 +104,17 @@ class ChannelSystem {
         });
     }
 
+    // What each row comes to at x, before its weight.
+    const VectorXf& totals(const PatchVectors& x) {
+        PatchVectors unused(x.size());
+        apply(x, unused);
+        mTotals.array() /= mWeights.array();
+        return mTotals;
+    }
+
   private:
     const ColorEquations& m;
+    const VectorXf& mWeights;
     std::vector<int> mTerms;
     std::vector<Eigen::LLT<MatrixXd>> mFactors;
     PatchVectors mRight;
@@ -101,19 +122,24 @@ class ChannelSystem {
     VectorXf mTotals;                // by row
 };
 
-// Preconditioned conjugate gradients, until the residual is kTolerance of that of the patches by themselves.
-PatchVectors conjugateGradients(ChannelSystem& system, int& iterations, Progress& progress) {
-    constexpr double kTolerance = 1e-3;
+// Preconditioned conjugate gradients from x (or nothing), until the residual is `tolerance` of that of the patches by themselves.
+PatchVectors conjugateGradients(ChannelSystem& system, PatchVectors x, double tolerance, int& iterations,
+                                Progress& progress) {
     constexpr int kMaxIterations = 60;
     const size_t count = system.right().size();
-    PatchVectors x(count), r(count), z(count), d(count), ad(count);
-    system.precondition(system.right(), x);
+    PatchVectors r(count), z(count), d(count), ad(count);
+    if (x.empty()) {
+        x.resize(count);
+        system.precondition(system.right(), x);
+    }
     system.apply(x, ad);
     for (size_t p = 0; p < count; ++p) r[p] = system.right()[p] - ad[p];
     system.precondition(r, z);
-    d = z;
+    d.resize(count);
     double rz = dot(r, z);
-    const double enough = kTolerance * kTolerance * rz;
+    system.precondition(system.right(), d);
+    const double enough = tolerance * tolerance * dot(system.right(), d);
+    d = z;
     for (int i = 0; i < kMaxIterations && rz > enough && !progress.stopRequested(); ++i, ++iterations) {
         system.apply(d, ad);
         const double alpha = rz / dot(d, ad);
@@ -129,6 +155,45 @@ PatchVectors conjugateGradients(ChannelSystem& system, int& iterations, Progress
     return x;
 }
 
+// How far the two sides of seams are apart: the mean of |difference| over the channels of the working space,
+// weighted by length, over what it may be; or the 95th percentile, if that is worse.
+double seamExcess(const ColorEquations& equations, const std::vector<SiteChoice>& choices,
+                  const std::array<PatchVectors, kMaxChannels>& factors, int channels,
+                  const VectorXf& weights, const VectorizeSettings& settings) {
+    std::array<std::vector<float>, kMaxChannels> differences;
+    std::vector<double> lengths;
+    for (int c = 0; c < channels; ++c) {
+        ChannelSystem system(equations, choices, weights, c);
+        const VectorXf& totals = system.totals(factors[size_t(c)]);
+        for (const ColorEquations::Seam& seam : equations.seams)
+            for (uint32_t i = 0; i < seam.rowCount; i += equations.seamStride)
+                differences[size_t(c)].push_back(
+                    float(double(totals(seam.firstRow + i)) /
+                          std::sqrt(seam.weight * seam.length(i, equations.seamStride))));
+    }
+    for (const ColorEquations::Seam& seam : equations.seams)
+        for (uint32_t i = 0; i < seam.rowCount; i += equations.seamStride)
+            lengths.push_back(seam.length(i, equations.seamStride));
+    float* planes[3] = {differences[0].data(), differences[1].data(), differences[2].data()};
+    toWorking(ColourBasis::Opponent, planes, lengths.size());
+
+    std::vector<std::pair<float, double>> levels;  // and the length that has them
+    double sum = 0, length = 0;
+    for (size_t i = 0; i < lengths.size(); ++i) {
+        double level = 0;
+        for (int c = 0; c < channels; ++c) level += std::abs(double(differences[size_t(c)][i])) * 255 / channels;
+        levels.emplace_back(float(level), lengths[i]);
+        sum += level * lengths[i];
+        length += lengths[i];
+    }
+    if (length <= 0) return 0;
+    std::sort(levels.begin(), levels.end());
+    double above = .05 * length;
+    size_t i = levels.size();
+    while (i > 1 && above > 0) above -= levels[--i].second;
+    return std::max(sum / length / settings.seamMeanLevels, double(levels[i].first) / settings.seamHighLevels);
+}
+
 Image inOpponentBasis(Image image) {
     float* planes[3] = {image.plane(0).data(), image.plane(1).data(), image.plane(2).data()};
     fromWorking(ColourBasis::Opponent, planes, image.planeSize());
@@ -142,18 +207,30 @@ Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& s
     const SiteBudget budget{settings.termsPerPatch};
     const std::vector<SiteChoice> choices = chooseSites(mesh, inOpponentBasis(sharp), budget, progress);
     if (!progress.step(.3)) return stopped();
-    const SeamWeights seams{settings.seamWeight, settings.seamGradientWeight};
+    const SeamWeights seams{1, settings.seamGradientWeight};
     const ColorEquations equations =
         buildEquations(mesh, inOpponentBasis(image), choices, seams, kSamplesPerSide, progress);
     if (!progress.step(.6)) return stopped();
 
     std::array<PatchVectors, kMaxChannels> factors;
+    VectorXf weights = VectorXf::Ones(equations.targets.rows());
     int iterations = 0;
-    for (int c = 0; c < mesh.channels(); ++c) {
-        ChannelSystem system(equations, choices, c);
-        factors[size_t(c)] = conjugateGradients(system, iterations, progress);
-        if (!progress.step(.6 + .4 * (c + 1) / mesh.channels())) return stopped();
+    double seamWeight = 1;
+    for (int pass = 0; pass < kSeamPasses; ++pass) {
+        const bool last = pass + 1 == kSeamPasses;
+        for (int c = 0; c < mesh.channels(); ++c) {
+            ChannelSystem system(equations, choices, weights, c);
+            factors[size_t(c)] = conjugateGradients(system, std::move(factors[size_t(c)]), last ? kTolerance : kFirstTolerance, iterations, progress);
+            if (!progress.step(.6 + .4 * (pass * mesh.channels() + c + 1) / (kSeamPasses * mesh.channels())))
+                return stopped();
+        }
+        if (last) break;
+        // Seams go about with the third root of their weight.
+        const double excess = seamExcess(equations, choices, factors, mesh.channels(), weights, settings);
+        seamWeight = std::clamp(seamWeight * excess * excess * excess, kLeastSeamWeight, kMostSeamWeight);
+        weights.tail(weights.size() - equations.pixelRows).setConstant(float(seamWeight));
     }
+    report.figures.push_back({"seam weight", seamWeight});
     mesh.setColourBasis(ColourBasis::Opponent);
     size_t terms = 0;
     mesh.forEachPatch([&](PatchId p) {

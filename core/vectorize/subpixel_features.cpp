@@ -258,25 +258,39 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
     return chains;
 }
 
-std::vector<FeatureChain> selectFeatures(std::vector<FeatureChain> chains, double lengthBudgetPx) {
-    constexpr double kEndsCostPx = 20;
+double segmentsNeeded(const FeatureChain& chain) {
+    constexpr double kLengthPx = 40, kTurn = 75 * 3.14159265358979323846 / 180;
+    constexpr size_t kReach = 3;  // points over which a direction is taken
+    const size_t n = chain.points.size(), margin = chain.closed ? 0 : kReach;
+    double turning = 0;
+    for (size_t i = margin; i + margin < n; ++i) {
+        const glm::dvec2 at = chain.points[i].position;
+        const glm::dvec2 in = at - chain.points[(i + n - kReach % n) % n].position;
+        const glm::dvec2 out = chain.points[(i + kReach) % n].position - at;
+        turning += std::abs(std::atan2(in.x * out.y - in.y * out.x, glm::dot(in, out)));
+    }
+    // Each turn is seen from kReach points.
+    return 1 + lengthPx(chain) / kLengthPx + turning / double(kReach) / kTurn;
+}
+
+std::vector<FeatureChain> selectFeatures(std::vector<FeatureChain> chains, double segmentBudget) {
     // A line through junctions counts as one, so that it is not kept in pieces.
     const std::vector<uint32_t> lines = throughLines(chains);
-    std::vector<double> lengths, lineLength(chains.size(), kEndsCostPx), lineImportance(chains.size(), 0);
+    std::vector<double> segments, lineSegments(chains.size(), 0), lineImportance(chains.size(), 0);
     for (size_t i = 0; i < chains.size(); ++i) {
-        lengths.push_back(lengthPx(chains[i]));
-        lineLength[lines[i]] += lengths[i];
+        segments.push_back(segmentsNeeded(chains[i]));
+        lineSegments[lines[i]] += segments[i];
         lineImportance[lines[i]] += chains[i].importance;
     }
-    const auto worth = [&](size_t i) { return lineImportance[lines[i]] / lineLength[lines[i]]; };
+    const auto worth = [&](size_t i) { return lineImportance[lines[i]] / lineSegments[lines[i]]; };
     std::vector<size_t> order(chains.size());
     std::iota(order.begin(), order.end(), size_t(0));
     std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return worth(a) > worth(b); });
     std::vector<bool> keep(chains.size(), false);
     double total = 0;
     for (const size_t i : order) {
-        if (total + lengths[i] > lengthBudgetPx) continue;
-        total += lengths[i];
+        if (total + segments[i] > segmentBudget) continue;
+        total += segments[i];
         keep[i] = true;
     }
     std::vector<FeatureChain> kept;

@@ -55,9 +55,12 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
                                                          const VectorizeSettings& settings,
                                                          StageReport& report, Progress& progress);
 
-// The chains with the most importance for their length, as many as lengthBudgetPx holds, in their order; each
-// is judged by the whole line that it is part of, whose ends cost a few px more. Chains that continue each
-// other where all others of a junction are gone become one.
-std::vector<FeatureChain> selectFeatures(std::vector<FeatureChain> chains, double lengthBudgetPx);
+// About how many cubics a chain takes: by its length and by how much it turns.
+double segmentsNeeded(const FeatureChain& chain);
+
+// The chains with the most importance for the segments that they need, as many as segmentBudget holds, in
+// their order; each is judged by the whole line that it is part of. Chains that continue each other where all
+// others of a junction are gone become one.
+std::vector<FeatureChain> selectFeatures(std::vector<FeatureChain> chains, double segmentBudget);
 
 }  // namespace tessera
