@@ -1,0 +1,295 @@
+// See bend_edges.h.
+#include "core/vectorize/bend_edges.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "core/base/parallel.h"
+#include "core/mesh/jacobian.h"
+#include "core/vectorize/fit_curves.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr int kRounds = 2;
+constexpr size_t kSegments = 8;  // of a curved side, for measuring
+constexpr double kGrowPx =
+    .3;  // as in the search for the mesh: patches also serve the pixels that they share
+// What an edge must save: a part of its two patches' error, and one level of one pixel and channel.
+constexpr double kLeastGain = .005;
+constexpr double kLeastSaving = 1.0 / (255.0 * 255.0);
+
+// How far an edge's inner control points lie beside those of the straight edge, to the left of it in the
+// direction of its halfedge; in lengths of the chord.
+struct Bend {
+    double first = 0;
+    double second = 0;
+};
+
+// An edge's inner control points, and points on it between its ends for measuring; none where it is straight.
+struct MeasuredCurve {
+    std::array<LatticePoint, 2> inner;
+    std::array<glm::dvec2, kSegments - 1> points;
+    size_t count = 0;
+};
+
+MeasuredCurve measured(const std::array<LatticePoint, 4>& control) {
+    MeasuredCurve curve{{control[1], control[2]}, {}, 0};
+    if (straightControlPoints(control[0], control[3]) == curve.inner) return curve;
+    const BezierCurve c = toPixels(control);
+    for (size_t k = 1; k < kSegments; ++k) curve.points[curve.count++] = c.at(double(k) / kSegments);
+    return curve;
+}
+
+// A patch's boundary as a polygon, moved outwards by kGrowPx.
+class Outline {
+  public:
+    void add(glm::dvec2 p) { mPoints[mCount++] = p; }
+    std::span<const glm::dvec2> grown();
+
+  private:
+    std::array<glm::dvec2, 3 * kSegments> mPoints, mGrown;
+    size_t mCount = 0;
+};
+
+std::span<const glm::dvec2> Outline::grown() {
+    const auto normal = [](glm::dvec2 from, glm::dvec2 to) {
+        const glm::dvec2 d = to - from;
+        const double length = glm::length(d);
+        return length > 0 ? glm::dvec2(d.y, -d.x) / length : glm::dvec2(0);
+    };
+    constexpr double kSharpest = .134;  // 1 - cos 30 degrees: sharper corners are not drawn out any further
+    glm::dvec2 before = normal(mPoints[mCount - 1], mPoints[0]);
+    for (size_t k = 0; k < mCount; ++k) {
+        const glm::dvec2 after = normal(mPoints[k], mPoints[k + 1 == mCount ? 0 : k + 1]);
+        mGrown[k] =
+            mPoints[k] + (before + after) * (kGrowPx / std::max(1 + glm::dot(before, after), kSharpest));
+        before = after;
+    }
+    return std::span(mGrown).first(mCount);
+}
+
+// 0 also where the base triangle is not positive.
+double evenness(const LatticeTriangle& t) {
+    if (cross(t.corner(1) - t.corner(0), t.corner(2) - t.corner(0)) <= 0) return 0;
+    const auto coefficients = jacobianBernstein(t);
+    double least = coefficients[0], sum = 0;
+    for (const double c : coefficients) {
+        least = std::min(least, c);
+        sum += c;
+    }
+    return least > 0 ? least * double(coefficients.size()) / sum : 0;
+}
+
+class EdgeBender {
+  public:
+    EdgeBender(PatchMesh mesh, const PolynomialFit& fit);
+
+    bool bend(Progress& progress, StageReport& report);
+    PatchMesh takeMesh();
+
+  private:
+    // An edge's curve, and its two patches with it.
+    struct Candidate {
+        Bend bend;
+        MeasuredCurve curve;
+        std::array<LatticePoint, 2> interiors;
+        std::array<double, 2> errors{};
+
+        double error() const { return errors[0] + errors[1]; }
+    };
+
+    std::array<PatchId, 2> patchesOf(EdgeId e) const;
+    MeasuredCurve curveOf(EdgeId e, Bend bend) const;
+    // Of a patch with `curve` in the place of edge e's own.
+    LatticeTriangle controlPoints(PatchId p, EdgeId e, const MeasuredCurve& curve) const;
+    double error(PatchId p, EdgeId e, const MeasuredCurve& curve) const;
+    std::optional<LatticePoint> goodInterior(PatchId p, EdgeId e, const MeasuredCurve& curve) const;
+    void improve(EdgeId e, Bend bend, Candidate& best) const;
+    bool bendEdge(EdgeId e, int round);
+    double totalError() const;
+
+    PatchMesh mMesh;
+    const PolynomialFit& mFit;
+    std::vector<EdgeId> mFree;
+    std::vector<MeasuredCurve> mCurves;    // by edge
+    std::vector<Bend> mBends;              // by edge
+    std::vector<LatticePoint> mInteriors;  // by patch
+    std::vector<double> mErrors;           // by patch
+};
+
+EdgeBender::EdgeBender(PatchMesh mesh, const PolynomialFit& fit)
+    : mMesh(std::move(mesh)),
+      mFit(fit),
+      mCurves(mMesh.connectivity().edgeCapacity()),
+      mBends(mCurves.size()),
+      mInteriors(mMesh.connectivity().faceCapacity()),
+      mErrors(mInteriors.size()) {
+    mMesh.forEachEdge([&](EdgeId e) {
+        mCurves[e.index] = measured(mMesh.controlPoints(HalfedgeMesh::halfedge(e)));
+        if (!mMesh.curve(e).feature && !mMesh.connectivity().onBorder(e)) mFree.push_back(e);
+    });
+    mMesh.forEachPatch([&](PatchId p) { mInteriors[p.index] = mMesh.interior(p); });
+    parallelFor(mErrors.size(), 16, [&](size_t begin, size_t end) {
+        for (auto f = uint32_t(begin); f < end; ++f)
+            if (mMesh.connectivity().alive(PatchId(f))) mErrors[f] = error(PatchId(f), {}, {});
+    });
+}
+
+std::array<PatchId, 2> EdgeBender::patchesOf(EdgeId e) const {
+    const HalfedgeId h = HalfedgeMesh::halfedge(e);
+    return {mMesh.connectivity().face(h), mMesh.connectivity().face(HalfedgeMesh::twin(h))};
+}
+
+MeasuredCurve EdgeBender::curveOf(EdgeId e, Bend bend) const {
+    const HalfedgeId h = HalfedgeMesh::halfedge(e);
+    const LatticePoint a = mMesh.position(mMesh.connectivity().origin(h)),
+                       b = mMesh.position(mMesh.connectivity().target(h));
+    const auto inner = straightControlPoints(a, b);
+    const glm::dvec2 chord = toPixels(b - a), left(-chord.y, chord.x);
+    return measured(
+        {a, inner[0] + toLattice(bend.first * left), inner[1] + toLattice(bend.second * left), b});
+}
+
+LatticeTriangle EdgeBender::controlPoints(PatchId p, EdgeId e, const MeasuredCurve& curve) const {
+    const HalfedgeMesh& c = mMesh.connectivity();
+    LatticeTriangle t;
+    size_t i = 0;
+    for (const HalfedgeId side : c.sides(p)) {
+        const EdgeId edge = HalfedgeMesh::edge(side);
+        const auto& inner = edge == e ? curve.inner : mCurves[edge.index].inner;
+        const bool along = side == HalfedgeMesh::halfedge(edge);
+        t.p[i++] = mMesh.position(c.origin(side));
+        t.p[i++] = inner[along ? 0 : 1];
+        t.p[i++] = inner[along ? 1 : 0];
+    }
+    t.p[kInterior] = mInteriors[p.index];
+    return t;
+}
+
+double EdgeBender::error(PatchId p, EdgeId e, const MeasuredCurve& curve) const {
+    const HalfedgeMesh& c = mMesh.connectivity();
+    std::array<glm::dvec2, 3> corners;
+    Outline outline;
+    size_t s = 0;
+    for (const HalfedgeId side : c.sides(p)) {
+        const EdgeId edge = HalfedgeMesh::edge(side);
+        const MeasuredCurve& own = edge == e ? curve : mCurves[edge.index];
+        corners[s] = toPixels(mMesh.position(c.origin(side)));
+        outline.add(corners[s++]);
+        const bool along = side == HalfedgeMesh::halfedge(edge);
+        for (size_t k = 0; k < own.count; ++k) outline.add(own.points[along ? k : own.count - 1 - k]);
+    }
+    return mFit.error(corners, outline.grown());
+}
+
+// With which the patch is certified and even enough.
+std::optional<LatticePoint> EdgeBender::goodInterior(PatchId p, EdgeId e, const MeasuredCurve& curve) const {
+    LatticeTriangle t = controlPoints(p, e, curve);
+    t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
+    if (evenness(t) >= kLeastEvenness && certified(t)) return t.p[kInterior];
+    return std::nullopt;
+}
+
+void EdgeBender::improve(EdgeId e, Bend bend, Candidate& best) const {
+    Candidate trial{bend, curveOf(e, bend), {}, {}};
+    const auto patches = patchesOf(e);
+    for (size_t i = 0; i < 2; ++i) {
+        const auto interior = goodInterior(patches[i], e, trial.curve);
+        if (!interior) return;
+        trial.interiors[i] = *interior;
+    }
+    for (size_t i = 0; i < 2; ++i) {
+        trial.errors[i] = error(patches[i], e, trial.curve);
+        if (trial.error() >= best.error()) return;
+    }
+    best = trial;
+}
+
+bool EdgeBender::bendEdge(EdgeId e, int round) {
+    const auto [first, second] = patchesOf(e);
+    const Candidate now{mBends[e.index],
+                        mCurves[e.index],
+                        {mInteriors[first.index], mInteriors[second.index]},
+                        {mErrors[first.index], mErrors[second.index]}};
+    Candidate best = now;
+    static const double kArcs[] = {-.04, .04, -.1, .1, -.18, .18};
+    if (round == 0)
+        for (const double h : kArcs) improve(e, {h, h}, best);
+    for (double step = .04; step > .005; step *= .5) {
+        const Bend from = best.bend;
+        for (const auto& [a, b] : {std::pair{1, 1}, {-1, -1}, {1, -1}, {-1, 1}})
+            improve(e, {from.first + a * step, from.second + b * step}, best);
+    }
+    if (now.error() - best.error() <= kLeastGain * now.error() + kLeastSaving) return false;
+    mBends[e.index] = best.bend;
+    mCurves[e.index] = best.curve;
+    mInteriors[first.index] = best.interiors[0];
+    mInteriors[second.index] = best.interiors[1];
+    mErrors[first.index] = best.errors[0];
+    mErrors[second.index] = best.errors[1];
+    return true;
+}
+
+double EdgeBender::totalError() const {
+    double sum = 0;
+    mMesh.forEachPatch([&](PatchId p) { sum += mErrors[p.index]; });
+    return sum;
+}
+
+bool EdgeBender::bend(Progress& progress, StageReport& report) {
+    const auto classes = colourEdges(mMesh.connectivity(), mFree);
+    const double before = totalError();
+    std::vector<uint8_t> bent(mCurves.size(), 1);
+    std::atomic<size_t> done{0};
+    std::atomic<bool> stop{false};
+    // An edge is worth another try where something around it changed in the round before or since.
+    const auto disturbed = [&](EdgeId e) {
+        for (const PatchId p : patchesOf(e))
+            for (const HalfedgeId side : mMesh.connectivity().sides(p))
+                if (bent[HalfedgeMesh::edge(side).index]) return true;
+        return false;
+    };
+    for (int round = 0; round < kRounds; ++round)
+        for (const auto& edges : classes) {
+            parallelFor(edges.size(), 8, [&](size_t begin, size_t end) {
+                for (size_t i = begin; i < end && !stop; ++i) {
+                    const double fraction = double(done++) / double(mFree.size() * kRounds);
+                    if (!progress.step(fraction)) stop = true;
+                    bent[edges[i].index] = disturbed(edges[i]) && bendEdge(edges[i], round);
+                }
+            });
+            if (stop) return false;
+        }
+    const auto curved =
+        std::count_if(mFree.begin(), mFree.end(), [&](EdgeId e) { return mCurves[e.index].count > 0; });
+    report.figures.emplace_back("curved edges", double(curved));
+    report.figures.emplace_back("edges", double(mFree.size()));
+    report.figures.emplace_back("error before", before);
+    report.figures.emplace_back("error after", totalError());
+    return true;
+}
+
+PatchMesh EdgeBender::takeMesh() {
+    for (const EdgeId e : mFree)
+        mMesh.setInnerControlPoints(HalfedgeMesh::halfedge(e), mCurves[e.index].inner[0],
+                                    mCurves[e.index].inner[1]);
+    for (uint32_t p = 0; p < mInteriors.size(); ++p)
+        if (mMesh.connectivity().alive(PatchId(p))) mMesh.setInterior(PatchId(p), mInteriors[p]);
+    return std::move(mMesh);
+}
+
+}  // namespace
+
+Result<PatchMesh> bendEdges(PatchMesh mesh, const PolynomialFit& fit, const VectorizeSettings&,
+                            StageReport& report, Progress& progress) {
+    EdgeBender bender(std::move(mesh), fit);
+    if (!bender.bend(progress, report)) return stopped();
+    return bender.takeMesh();
+}
+
+}  // namespace tessera
