@@ -28,6 +28,7 @@ const std::array kNumbers{
     NumberKey{"cannyLow", &S::cannyLow, 0, 1},
     NumberKey{"cannyHigh", &S::cannyHigh, 0, 1},
     NumberKey{"minChainPixels", &S::minChainPixels, 2, 1'000'000},
+    NumberKey{"featureTolerancePx", &S::featureTolerancePx, .01, 100},
     NumberKey{"fairingRadiusPx", &S::fairingRadiusPx, 0, 100},
     NumberKey{"colourWeight", &S::colourWeight, 0, 10'000},
     NumberKey{"curveTolerancePx", &S::curveTolerancePx, .01, 1'000},

@@ -24,6 +24,7 @@ struct VectorizeSettings {
     double cannyLow = .05;
     double cannyHigh = .125;
     int minChainPixels = 10;
+    double featureTolerancePx = .3;  // of the cubics of subpixel features to their points
 
     // Initial mesh (4.1): Taubin fairing of colours within this distance of features; 0 is off.
     double fairingRadiusPx = 0;

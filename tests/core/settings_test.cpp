@@ -28,7 +28,7 @@ TEST(Settings, ComeBackFromTheirText) {
 TEST(Settings, ListEachNumberOfTheStruct) {
     // A setting that is added to the struct must be added to the text: two of them differ in every key but
     // the stages'.
-    EXPECT_EQ(toKeyValues({}).size(), 14u);
+    EXPECT_EQ(toKeyValues({}).size(), 15u);
     for (const auto& [key, value] : toKeyValues({})) EXPECT_NE(key, "threads");
 }
 
@@ -45,6 +45,7 @@ TEST(Settings, RefuseWhatIsOutOfRangeAndSayTheRange) {
                                                           {"cannyHigh", "inf"},
                                                           {"cannyHigh", " .5"},
                                                           {"curveTolerancePx", "0"},
+                                                          {"featureTolerancePx", "0"},
                                                           {"cornerDegrees", "181"},
                                                           {"samplesPerSide", "1"}}) {
         const auto set = setKeyValue(settings, key, value);

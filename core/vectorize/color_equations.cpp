@@ -1,0 +1,330 @@
+// See color_equations.h.
+#include "core/vectorize/color_equations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/vectorize/patch_pixels.h"
+
+namespace tessera {
+
+namespace {
+
+using Rows = ColorEquations::Rows;
+
+// Against drifting where pixels say little: a squared factor counts this much of a patch's pixels.
+constexpr double kRidge = 1e-5;
+
+// Parts of rows, as the patches find them: factors of `patch` for row `id`.
+struct Part {
+    uint32_t id;
+    uint32_t patch;
+    size_t offset;
+};
+struct Parts {
+    std::vector<Part> parts;
+    std::vector<float> factors;
+
+    float* add(uint32_t id, uint32_t patch, size_t count) {
+        parts.push_back({id, patch, factors.size()});
+        factors.resize(factors.size() + count, 0.0F);
+        return factors.data() + parts.back().offset;
+    }
+};
+
+class EquationBuilder {
+  public:
+    EquationBuilder(const PatchMesh& mesh, const Image& picture, const std::vector<SiteChoice>& choices,
+                    int samplesPerSide)
+        : mMesh(mesh), mPicture(picture), mSide(samplesPerSide), mBlur(mesh) {
+        m.patches.resize(choices.size());
+        m.bases.reserve(choices.size());
+        static constexpr uint8_t kCorners[] = {0, 1, 2};
+        for (uint32_t p = 0; p < choices.size(); ++p) {
+            const bool alive = mesh.connectivity().alive(PatchId(p));
+            m.bases.emplace_back(alive ? std::span<const uint8_t>(choices[p].sites)
+                                       : std::span<const uint8_t>(kCorners));
+            if (!alive) continue;
+            auto& patch = m.patches[p];
+            patch.count = int(choices[p].sites.size());
+            patch.gram = Eigen::MatrixXd::Zero(patch.count, patch.count);
+            patch.moments = Eigen::MatrixXd::Zero(patch.count, mesh.channels());
+        }
+    }
+
+    void addPixels(Progress& progress);
+    void addSeams(const SeamWeights& weights, Progress& progress);
+    void finish();
+
+    ColorEquations m;
+
+  private:
+    void addPatch(PatchId p, const PatchPixels& pixels, Parts& parts);
+    void addBlurTerms(PatchId p, const PatchPixels& pixels, const std::vector<uint8_t>& shared, Parts& parts);
+    std::vector<uint8_t> findShared(PatchId p, const PatchPixels& pixels);
+    void addSide(HalfedgeId h, size_t samples, uint32_t firstRow, double sign, const SeamWeights& weights,
+                 Parts& parts);
+
+    const PatchMesh& mMesh;
+    const Image& mPicture;
+    int mSide;
+    EdgeBlur mBlur;
+    std::vector<Parts> mParts;
+    // By sample of the patch at hand: its blur terms.
+    struct Terms {
+        uint32_t sample;
+        int count;
+        std::array<BlurTerm, kMaxBlurTerms> terms;
+    };
+};
+
+// Pixels that are not the patch's alone.
+std::vector<uint8_t> EquationBuilder::findShared(PatchId p, const PatchPixels& pixels) {
+    std::vector<uint8_t> shared(pixels.pixels.size());
+    const float whole = 1 - .5F / float(mSide * mSide);
+    for (size_t k = 0; k < shared.size(); ++k) shared[k] = pixels.pixels[k].coverage < whole;
+    if (!mBlur.inReach(p)) return shared;
+    std::array<BlurTerm, kMaxBlurTerms> terms;
+    for (size_t i = 0; i < pixels.at.size(); ++i)
+        if (!shared[pixels.pixelOf[i]])
+            shared[pixels.pixelOf[i]] = mBlur.terms(p, glm::dvec2(pixels.at[i]), terms) > 0;
+    return shared;
+}
+
+// The jumps that blurred features add: own + weight (other - own), each at the foot.
+void EquationBuilder::addBlurTerms(PatchId p, const PatchPixels& pixels, const std::vector<uint8_t>& shared,
+                                   Parts& parts) {
+    const float share = 1 / float(mSide * mSide);
+    std::array<BlurTerm, kMaxBlurTerms> terms;
+    struct Foot {
+        uint32_t patch, pixel;
+        float weight;
+        glm::vec2 at;
+    };
+    std::vector<Foot> feet;
+    for (uint32_t i = 0; i < pixels.at.size(); ++i) {
+        if (!shared[pixels.pixelOf[i]]) continue;
+        const int count = mBlur.terms(p, glm::dvec2(pixels.at[i]), terms);
+        for (int t = 0; t < count; ++t) {
+            const BlurTerm& term = terms[size_t(t)];
+            const uint32_t pixel = pixels.pixels[pixels.pixelOf[i]].index;
+            feet.push_back({term.own.index, pixel, -share * term.weight, term.ownAt});
+            feet.push_back({term.other.index, pixel, share * term.weight, term.otherAt});
+        }
+    }
+    std::stable_sort(feet.begin(), feet.end(), [](const Foot& a, const Foot& b) {
+        return a.patch != b.patch ? a.patch < b.patch : a.pixel < b.pixel;
+    });
+    std::vector<float> x, y;
+    for (size_t first = 0, last = 0; first < feet.size(); first = last) {
+        const uint32_t q = feet[first].patch;
+        while (last < feet.size() && feet[last].patch == q) ++last;
+        const size_t n = last - first;
+        x.resize(n);
+        y.resize(n);
+        for (size_t i = 0; i < n; ++i) {
+            x[i] = feet[first + i].at.x;
+            y[i] = feet[first + i].at.y;
+        }
+        const int terms = m.patches[q].count;
+        Rows values(terms, Eigen::Index(n));
+        m.bases[q].evaluate(x.data(), y.data(), n, values.data(), n);
+        float* row = nullptr;
+        for (size_t i = 0; i < n; ++i) {
+            if (i == 0 || feet[first + i].pixel != feet[first + i - 1].pixel)
+                row = parts.add(feet[first + i].pixel, q, size_t(terms));
+            for (int k = 0; k < terms; ++k) row[k] += feet[first + i].weight * values(k, Eigen::Index(i));
+        }
+    }
+}
+
+void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& parts) {
+    auto& patch = m.patches[p.index];
+    const size_t samples = pixels.x.size();
+    const auto count = Eigen::Index(pixels.pixels.size());
+    Rows values(patch.count, Eigen::Index(samples));
+    m.bases[p.index].evaluate(pixels.x.data(), pixels.y.data(), samples, values.data(), samples);
+    Eigen::MatrixXf means = Eigen::MatrixXf::Zero(patch.count, count);
+    for (size_t i = 0; i < samples; ++i) means.col(pixels.pixelOf[i]) += values.col(Eigen::Index(i));
+    means *= 1 / float(mSide * mSide);
+
+    const std::vector<uint8_t> shared = findShared(p, pixels);
+    Eigen::MatrixXf targets = Eigen::MatrixXf::Zero(count, mMesh.channels());
+    double weight = 0;
+    for (Eigen::Index k = 0; k < count; ++k) {
+        const auto& pixel = pixels.pixels[size_t(k)];
+        weight += double(pixel.coverage);
+        if (shared[size_t(k)]) {
+            float* row = parts.add(pixel.index, p.index, size_t(patch.count));
+            for (int i = 0; i < patch.count; ++i) row[i] = means(i, k);
+            means.col(k).setZero();
+        } else {
+            for (int c = 0; c < mMesh.channels(); ++c) targets(k, c) = mPicture.plane(c)[pixel.index];
+        }
+    }
+    Eigen::MatrixXf gram = Eigen::MatrixXf::Zero(patch.count, patch.count);
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(means);
+    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+    patch.gram = gram.cast<double>();
+    patch.gram.diagonal().array() += kRidge * std::max(1.0, weight);
+    patch.moments = (means * targets).cast<double>();
+    if (mBlur.inReach(p)) addBlurTerms(p, pixels, shared, parts);
+}
+
+void EquationBuilder::addPixels(Progress& progress) {
+    const PixelSampler sampler(mMesh, mSide);
+    mMesh.forEachPatch([&](PatchId p) { m.patches[p.index].gram.diagonal().array() += kRidge; });
+    const size_t first = mParts.size();
+    mParts.resize(first + sampler.patches().size());
+    parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
+        PatchPixels pixels;
+        for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
+            sampler.sample(i, pixels);
+            if (!pixels.pixels.empty()) addPatch(sampler.patches()[i], pixels, mParts[first + i]);
+        }
+    });
+    m.pixelRows = uint32_t(mPicture.planeSize());
+}
+
+// One patch's side of a seam: colours, and derivatives across the edge, at `samples` points.
+void EquationBuilder::addSide(HalfedgeId h, size_t samples, uint32_t firstRow, double sign,
+                              const SeamWeights& weights, Parts& parts) {
+    const HalfedgeMesh& mesh = mMesh.connectivity();
+    const PatchId p = mesh.face(h);
+    const auto sides = mesh.sides(p);
+    const int side = int(std::find(sides.begin(), sides.end(), h) - sides.begin());
+    const bool reversed = HalfedgeMesh::halfedge(HalfedgeMesh::edge(h)) != h;
+    const BezierTriangle t = toPixels(mMesh.controlPoints(p));
+    const BezierCurve curve = toPixels(mMesh.controlPoints(HalfedgeMesh::halfedge(HalfedgeMesh::edge(h))));
+    const double spacing = curve.length() / double(samples);
+    const double w0 = sign * std::sqrt(weights.colour * spacing),
+                 w1 = sign * std::sqrt(weights.gradient * spacing);
+    const auto n = size_t(m.patches[p.index].count);
+    std::vector<double> value(n), dx(n), dy(n);
+    const uint32_t stride = weights.gradient > 0 ? 2 : 1;
+    for (uint32_t i = 0; i < samples; ++i) {
+        const double along = (double(i) + .5) / double(samples), s = reversed ? 1 - along : along;
+        Barycentric b(0);
+        b[side] = 1 - s;
+        b[(side + 1) % 3] = s;
+        m.bases[p.index].evaluateWithDerivatives(domainPoint(b), value.data(), dx.data(), dy.data());
+        float* row = parts.add(firstRow + stride * i, p.index, n);
+        for (size_t k = 0; k < n; ++k) row[k] = float(w0 * value[k]);
+        if (stride == 1) continue;
+        // The step in the domain that goes a pixel along the edge's normal: J^-1 normal.
+        const PatchPoint at = evaluateWithDerivatives(t, b);
+        const double det = cross(at.dv, at.dw);
+        const glm::dvec2 tangent = curve.derivative(along);
+        const double speed = std::sqrt(tangent.x * tangent.x + tangent.y * tangent.y);
+        const glm::dvec2 normal = glm::dvec2(-tangent.y, tangent.x) / std::max(1e-9, speed);
+        const double dv = det > 1e-9 ? cross(normal, at.dw) / det : 0;
+        const double dw = det > 1e-9 ? cross(at.dv, normal) / det : 0;
+        const double stepX = dv + .5 * dw, stepY = kDomainHeight * dw;
+        row = parts.add(firstRow + stride * i + 1, p.index, n);
+        for (size_t k = 0; k < n; ++k) row[k] = float(w1 * (dx[k] * stepX + dy[k] * stepY));
+    }
+}
+
+void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
+    const HalfedgeMesh& mesh = mMesh.connectivity();
+    constexpr double kSamplesPerPx = .7;
+    constexpr int kLeast = 4, kMost = 16;
+    struct Seam {
+        HalfedgeId h;
+        size_t samples;
+        uint32_t firstRow;
+    };
+    std::vector<Seam> seams;
+    uint32_t rows = m.pixelRows;
+    mMesh.forEachEdge([&](EdgeId e) {
+        if (mesh.onBorder(e) || mMesh.curve(e).feature) return;
+        const HalfedgeId h = HalfedgeMesh::halfedge(e);
+        const double length = toPixels(mMesh.controlPoints(h)).length();
+        const auto samples = size_t(std::clamp(int(length * kSamplesPerPx), kLeast, kMost));
+        seams.push_back({h, samples, rows});
+        rows += uint32_t(samples) * (weights.gradient > 0 ? 2 : 1);
+    });
+    const size_t first = mParts.size();
+    mParts.resize(first + seams.size());
+    parallelFor(seams.size(), 16, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
+            addSide(seams[i].h, seams[i].samples, seams[i].firstRow, 1, weights, mParts[first + i]);
+            addSide(HalfedgeMesh::twin(seams[i].h), seams[i].samples, seams[i].firstRow, -1, weights,
+                    mParts[first + i]);
+        }
+    });
+}
+
+// Brings the parts together: rows numbered densely, each patch's factors side by side.
+void EquationBuilder::finish() {
+    struct Place {
+        uint32_t id;
+        const float* factors;
+    };
+    std::vector<std::vector<Place>> places(m.patches.size());
+    std::vector<uint32_t> number;  // by id
+    uint32_t ids = 0;
+    for (const Parts& parts : mParts)
+        for (const Part& part : parts.parts) ids = std::max(ids, part.id + 1);
+    number.assign(ids, 0);
+    for (const Parts& parts : mParts)
+        for (const Part& part : parts.parts) {
+            number[part.id] = 1;
+            places[part.patch].push_back({part.id, parts.factors.data() + part.offset});
+        }
+    uint32_t rows = 0;
+    std::vector<uint32_t> pixelOfRow;
+    for (uint32_t id = 0; id < ids; ++id) {
+        if (!number[id]) continue;
+        number[id] = rows++;
+        pixelOfRow.push_back(id);
+    }
+    m.targets = Eigen::MatrixXf::Zero(rows, mMesh.channels());
+    for (uint32_t row = 0; row < rows; ++row)
+        if (pixelOfRow[row] < m.pixelRows)
+            for (int c = 0; c < mMesh.channels(); ++c) m.targets(row, c) = mPicture.plane(c)[pixelOfRow[row]];
+    m.pixelRows =
+        uint32_t(std::lower_bound(pixelOfRow.begin(), pixelOfRow.end(), m.pixelRows) - pixelOfRow.begin());
+
+    parallelFor(m.patches.size(), 16, [&](size_t begin, size_t end) {
+        for (size_t p = begin; p < end; ++p) {
+            auto& own = places[p];
+            std::stable_sort(own.begin(), own.end(),
+                             [](const Place& a, const Place& b) { return a.id < b.id; });
+            auto& patch = m.patches[p];
+            for (const Place& place : own)
+                if (patch.rowIds.empty() || patch.rowIds.back() != number[place.id])
+                    patch.rowIds.push_back(number[place.id]);
+            patch.rows = Rows::Zero(Eigen::Index(patch.rowIds.size()), patch.count);
+            Eigen::Index at = -1;
+            for (size_t i = 0; i < own.size(); ++i) {
+                if (i == 0 || own[i].id != own[i - 1].id) ++at;
+                for (int k = 0; k < patch.count; ++k) patch.rows(at, k) += own[i].factors[k];
+            }
+        }
+    });
+    m.firstEntry.assign(size_t(rows) + 1, 0);
+    for (const auto& patch : m.patches)
+        for (const uint32_t row : patch.rowIds) ++m.firstEntry[row + 1];
+    for (size_t row = 0; row < rows; ++row) m.firstEntry[row + 1] += m.firstEntry[row];
+    m.entries.resize(m.firstEntry.back());
+    std::vector<uint32_t> fill(m.firstEntry.begin(), m.firstEntry.end() - 1);
+    for (uint32_t p = 0; p < m.patches.size(); ++p)
+        for (uint32_t i = 0; i < m.patches[p].rowIds.size(); ++i)
+            m.entries[fill[m.patches[p].rowIds[i]]++] = {p, i};
+}
+
+}  // namespace
+
+ColorEquations buildEquations(const PatchMesh& mesh, const Image& picture,
+                              const std::vector<SiteChoice>& choices, const SeamWeights& weights,
+                              int samplesPerSide, Progress& progress) {
+    EquationBuilder builder(mesh, picture, choices, samplesPerSide);
+    builder.addPixels(progress);
+    builder.addSeams(weights, progress);
+    if (!progress.stopRequested()) builder.finish();
+    return std::move(builder.m);
+}
+
+}  // namespace tessera

@@ -1,0 +1,54 @@
+// The linear least squares of the colour fit: an equation for each pixel, which is the mean of the colours
+// over its square, and equations by which patches agree along edges that are no features.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/image/image.h"
+#include "core/mesh/edge_blur.h"
+#include "core/mesh/newton_basis.h"
+#include "core/mesh/patch_mesh.h"
+#include "core/vectorize/site_pursuit.h"
+
+namespace tessera {
+
+// The unknowns are the Newton factors of each patch and channel; channels are independent of each other. An
+// equation of one patch alone goes into its Gram matrix. One of several patches (a pixel across an edge or
+// near a blurred feature, a point of a seam) is a row, whose factors lie with the patches.
+struct ColorEquations {
+    using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    struct Patch {
+        int count = 0;  // of unknowns: the most that a channel has
+        Eigen::MatrixXd gram;
+        Eigen::MatrixXd moments;       // (count x channels)
+        std::vector<uint32_t> rowIds;  // ascending
+        Rows rows;                     // (rowIds.size() x count)
+    };
+    struct Entry {
+        uint32_t patch;
+        uint32_t place;  // in its rowIds
+    };
+
+    std::vector<Patch> patches;        // by patch id; count 0 where there is none
+    std::vector<NewtonBasis> bases;    // by patch id
+    std::vector<uint32_t> firstEntry;  // by row, into entries
+    std::vector<Entry> entries;
+    Eigen::MatrixXf targets;  // (rows x channels)
+    uint32_t pixelRows = 0;   // rows from here on are of seams
+};
+
+struct SeamWeights {
+    double colour = 1;    // C0: of a squared difference over a pixel of edge, against a pixel's squared error
+    double gradient = 0;  // C1: the same, of the difference a pixel off the edge
+};
+
+// `picture` in the mesh's basis; samplesPerSide^2 samples a pixel. Void where progress says stop.
+ColorEquations buildEquations(const PatchMesh& mesh, const Image& picture,
+                              const std::vector<SiteChoice>& choices, const SeamWeights& weights,
+                              int samplesPerSide, Progress& progress);
+
+}  // namespace tessera

@@ -1,0 +1,156 @@
+// See site_pursuit.h.
+#include "core/vectorize/site_pursuit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/mesh/newton_basis.h"
+#include "core/vectorize/patch_pixels.h"
+
+namespace tessera {
+
+namespace {
+
+using Eigen::MatrixXf;
+using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+constexpr int kCorners = 3;
+
+// By channel, the squared error with 3, 4, ... sites.
+using ErrorCurves = std::array<std::vector<float>, kMaxChannels>;
+
+// Site after site the one that takes most of the error that is left, over all channels together: a pivoted
+// Cholesky factorization of the Gram matrix of all sites' functions.
+class Pursuit {
+  public:
+    Pursuit(const PatchPixels& pixels, const Image& picture, int maxTerms)
+        : mTaken(kCentreSites, maxTerms), mChannels(picture.channels()) {
+        const auto count = Eigen::Index(pixels.pixels.size());
+        RowMajor rows(kCentreSites, count);
+        evaluateSiteFunctions(pixels.x.data(), pixels.y.data(), size_t(count), rows.data(), size_t(count));
+        MatrixXf targets(count, mChannels);
+        for (Eigen::Index k = 0; k < count; ++k)
+            for (int c = 0; c < mChannels; ++c)
+                targets(k, c) = picture.plane(c)[pixels.pixels[size_t(k)].index];
+        mGram = MatrixXf::Zero(kCentreSites, kCentreSites);
+        mGram.selfadjointView<Eigen::Lower>().rankUpdate(rows);
+        mGram.triangularView<Eigen::StrictlyUpper>() = mGram.transpose();
+        mProducts = rows * targets;
+        mNorm = mOwn = mGram.diagonal();
+        mLeft = targets.cast<double>().colwise().squaredNorm();
+    }
+
+    void run(int most, std::vector<uint8_t>& sites, ErrorCurves& errors) {
+        for (int k = 0; k < most; ++k) {
+            const int site = k < kCorners ? k : best();
+            if (site < 0) return;
+            take(site, k);
+            sites.push_back(uint8_t(site));
+            if (k + 1 < kCorners) continue;
+            for (int c = 0; c < mChannels; ++c) errors[size_t(c)].push_back(float(mLeft(c)));
+        }
+    }
+
+  private:
+    // What is left of a function, once those taken are out of it, must be more than rounding.
+    static constexpr float kDependent = 1e-4F;
+    bool independent(int site) const { return mNorm(site) >= kDependent * mOwn(site) && mNorm(site) > 0; }
+
+    int best() const {
+        int found = -1;
+        float most = 0;
+        for (int s = kCorners; s < kCentreSites; ++s) {
+            if (mUsed[size_t(s)] || !independent(s)) continue;
+            const float gain = mProducts.row(s).squaredNorm() / mNorm(s);
+            if (gain > most) {
+                most = gain;
+                found = s;
+            }
+        }
+        return found;
+    }
+
+    void take(int site, int k) {
+        mUsed[size_t(site)] = true;
+        auto column = mTaken.col(k);
+        if (!independent(site)) {
+            column.setZero();
+            return;
+        }
+        const float root = std::sqrt(mNorm(site));
+        column = mGram.col(site);
+        column.noalias() -= mTaken.leftCols(k) * mTaken.row(site).head(k).transpose();
+        column /= root;
+        const Eigen::RowVectorXf z = mProducts.row(site) / root;
+        mProducts.noalias() -= column * z;
+        mNorm -= column.cwiseAbs2();
+        for (int c = 0; c < mChannels; ++c) mLeft(c) -= double(z(c)) * double(z(c));
+    }
+
+    MatrixXf mGram, mProducts, mTaken;  // products (sites x channels) with what is left of the picture
+    Eigen::VectorXf mNorm, mOwn;
+    Eigen::VectorXd mLeft;
+    std::array<bool, kCentreSites> mUsed{};
+    int mChannels;
+};
+
+// How many terms pay at this price each.
+int worthwhileTerms(const std::vector<float>& errors, double price) {
+    size_t best = 0;
+    for (size_t k = 1; k < errors.size(); ++k)
+        if (double(errors[k]) + price * double(k) < double(errors[best]) + price * double(best)) best = k;
+    return kCorners + int(best);
+}
+
+// The same price everywhere, as low as the budget allows.
+void spend(const PatchMesh& mesh, const std::vector<ErrorCurves>& errors, double budget,
+           std::vector<SiteChoice>& choices) {
+    const auto choose = [&](double price) {
+        double total = 0;
+        mesh.forEachPatch([&](PatchId p) {
+            for (int c = 0; c < mesh.channels(); ++c)
+                total += choices[p.index].terms[size_t(c)] =
+                    worthwhileTerms(errors[p.index][size_t(c)], price);
+        });
+        return total;
+    };
+    constexpr int kBisections = 40;
+    double low = 1e-9, high = 10;
+    for (int i = 0; i < kBisections; ++i) {
+        const double middle = std::sqrt(low * high);
+        (choose(middle) > budget ? low : high) = middle;
+    }
+    choose(high);
+}
+
+}  // namespace
+
+std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, const SiteBudget& budget,
+                                    Progress& progress) {
+    const size_t capacity = mesh.connectivity().faceCapacity();
+    std::vector<SiteChoice> choices(capacity);
+    std::vector<ErrorCurves> errors(capacity);
+    const PixelSampler sampler(mesh, 1);
+    parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
+        PatchPixels pixels;
+        for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
+            sampler.sample(i, pixels);
+            if (pixels.pixels.empty()) continue;
+            const uint32_t p = sampler.patches()[i].index;
+            const int most = std::clamp(int(budget.termsPerPixel * double(pixels.pixels.size())), kCorners,
+                                        budget.maxTerms);
+            Pursuit(pixels, picture, most).run(most, choices[p].sites, errors[p]);
+        }
+    });
+    if (progress.stopRequested()) return {};
+    spend(mesh, errors, budget.termsPerPatch * double(mesh.patchCount()), choices);
+    mesh.forEachPatch([&](PatchId p) {
+        SiteChoice& choice = choices[p.index];
+        if (choice.sites.empty()) choice.sites = {0, 1, 2};
+        choice.sites.resize(size_t(*std::max_element(choice.terms.begin(), choice.terms.end())));
+    });
+    return choices;
+}
+
+}  // namespace tessera

@@ -1,0 +1,31 @@
+// Which centres each patch's spline gets, and how many of them each channel uses: chosen where they pay (the
+// paper's future work), by orthogonal matching pursuit (Pati et al. 1993), under one budget for the picture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/image/image.h"
+#include "core/mesh/patch_mesh.h"
+
+namespace tessera {
+
+struct SiteChoice {
+    std::vector<uint8_t> sites;             // as in PatchSpline, the corners first
+    std::array<int, kMaxChannels> terms{};  // factors of each channel, 3 .. sites.size()
+};
+
+struct SiteBudget {
+    double termsPerPatch = 48;  // over all channels, on the average
+    int maxTerms = 40;          // of a channel
+    double termsPerPixel = .7;  // a patch has no more than that
+};
+
+// By patch id. `picture` is in the mesh's basis and has hard steps at features. Empty where progress says
+// stop.
+std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, const SiteBudget& budget,
+                                    Progress& progress);
+
+}  // namespace tessera
