@@ -4,23 +4,20 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <optional>
 
 #include "core/base/parallel.h"
 #include "core/mesh/jacobian.h"
 #include "core/vectorize/fit_curves.h"
+#include "core/vectorize/parameter_fit.h"
 
 namespace tessera {
 
 namespace {
 
 constexpr int kRounds = 2;
-constexpr size_t kSegments = 8;  // of a curved side, for measuring
-constexpr double kGrowPx =
-    .3;  // as in the search for the mesh: patches also serve the pixels that they share
 // What an edge must save: a part of its two patches' error, and one level of one pixel and channel.
-constexpr double kLeastGain = .005;
+constexpr double kLeastGain = .03;
 constexpr double kLeastSaving = 1.0 / (255.0 * 255.0);
 
 // How far an edge's inner control points lie beside those of the straight edge, to the left of it in the
@@ -28,50 +25,9 @@ constexpr double kLeastSaving = 1.0 / (255.0 * 255.0);
 struct Bend {
     double first = 0;
     double second = 0;
+
+    bool operator==(const Bend&) const = default;
 };
-
-// An edge's inner control points, and points on it between its ends for measuring; none where it is straight.
-struct MeasuredCurve {
-    std::array<LatticePoint, 2> inner;
-    std::array<glm::dvec2, kSegments - 1> points;
-    size_t count = 0;
-};
-
-MeasuredCurve measured(const std::array<LatticePoint, 4>& control) {
-    MeasuredCurve curve{{control[1], control[2]}, {}, 0};
-    if (straightControlPoints(control[0], control[3]) == curve.inner) return curve;
-    const BezierCurve c = toPixels(control);
-    for (size_t k = 1; k < kSegments; ++k) curve.points[curve.count++] = c.at(double(k) / kSegments);
-    return curve;
-}
-
-// A patch's boundary as a polygon, moved outwards by kGrowPx.
-class Outline {
-  public:
-    void add(glm::dvec2 p) { mPoints[mCount++] = p; }
-    std::span<const glm::dvec2> grown();
-
-  private:
-    std::array<glm::dvec2, 3 * kSegments> mPoints, mGrown;
-    size_t mCount = 0;
-};
-
-std::span<const glm::dvec2> Outline::grown() {
-    const auto normal = [](glm::dvec2 from, glm::dvec2 to) {
-        const glm::dvec2 d = to - from;
-        const double length = glm::length(d);
-        return length > 0 ? glm::dvec2(d.y, -d.x) / length : glm::dvec2(0);
-    };
-    constexpr double kSharpest = .134;  // 1 - cos 30 degrees: sharper corners are not drawn out any further
-    glm::dvec2 before = normal(mPoints[mCount - 1], mPoints[0]);
-    for (size_t k = 0; k < mCount; ++k) {
-        const glm::dvec2 after = normal(mPoints[k], mPoints[k + 1 == mCount ? 0 : k + 1]);
-        mGrown[k] =
-            mPoints[k] + (before + after) * (kGrowPx / std::max(1 + glm::dot(before, after), kSharpest));
-        before = after;
-    }
-    return std::span(mGrown).first(mCount);
-}
 
 // 0 also where the base triangle is not positive.
 double evenness(const LatticeTriangle& t) {
@@ -85,10 +41,14 @@ double evenness(const LatticeTriangle& t) {
     return least > 0 ? least * double(coefficients.size()) / sum : 0;
 }
 
+// Of an edge's cubic, in the direction of its halfedge.
+using InnerPoints = std::array<LatticePoint, 2>;
+
 class EdgeBender {
   public:
-    EdgeBender(PatchMesh mesh, const PolynomialFit& fit);
+    EdgeBender(PatchMesh mesh, const ParameterFit& fit);
 
+    bool measure(const Progress& progress);
     bool bend(Progress& progress, StageReport& report);
     PatchMesh takeMesh();
 
@@ -96,7 +56,7 @@ class EdgeBender {
     // An edge's curve, and its two patches with it.
     struct Candidate {
         Bend bend;
-        MeasuredCurve curve;
+        InnerPoints curve;
         std::array<LatticePoint, 2> interiors;
         std::array<double, 2> errors{};
 
@@ -104,25 +64,24 @@ class EdgeBender {
     };
 
     std::array<PatchId, 2> patchesOf(EdgeId e) const;
-    MeasuredCurve curveOf(EdgeId e, Bend bend) const;
+    InnerPoints curveOf(EdgeId e, Bend bend) const;
     // Of a patch with `curve` in the place of edge e's own.
-    LatticeTriangle controlPoints(PatchId p, EdgeId e, const MeasuredCurve& curve) const;
-    double error(PatchId p, EdgeId e, const MeasuredCurve& curve) const;
-    std::optional<LatticePoint> goodInterior(PatchId p, EdgeId e, const MeasuredCurve& curve) const;
+    LatticeTriangle controlPoints(PatchId p, EdgeId e, const InnerPoints& curve) const;
+    std::optional<LatticePoint> goodInterior(PatchId p, EdgeId e, const InnerPoints& curve) const;
     void improve(EdgeId e, Bend bend, Candidate& best) const;
     bool bendEdge(EdgeId e, int round);
     double totalError() const;
 
     PatchMesh mMesh;
-    const PolynomialFit& mFit;
+    const ParameterFit& mFit;
     std::vector<EdgeId> mFree;
-    std::vector<MeasuredCurve> mCurves;    // by edge
+    std::vector<InnerPoints> mCurves;      // by edge
     std::vector<Bend> mBends;              // by edge
     std::vector<LatticePoint> mInteriors;  // by patch
     std::vector<double> mErrors;           // by patch
 };
 
-EdgeBender::EdgeBender(PatchMesh mesh, const PolynomialFit& fit)
+EdgeBender::EdgeBender(PatchMesh mesh, const ParameterFit& fit)
     : mMesh(std::move(mesh)),
       mFit(fit),
       mCurves(mMesh.connectivity().edgeCapacity()),
@@ -130,14 +89,20 @@ EdgeBender::EdgeBender(PatchMesh mesh, const PolynomialFit& fit)
       mInteriors(mMesh.connectivity().faceCapacity()),
       mErrors(mInteriors.size()) {
     mMesh.forEachEdge([&](EdgeId e) {
-        mCurves[e.index] = measured(mMesh.controlPoints(HalfedgeMesh::halfedge(e)));
+        const auto control = mMesh.controlPoints(HalfedgeMesh::halfedge(e));
+        mCurves[e.index] = {control[1], control[2]};
         if (!mMesh.curve(e).feature && !mMesh.connectivity().onBorder(e)) mFree.push_back(e);
     });
     mMesh.forEachPatch([&](PatchId p) { mInteriors[p.index] = mMesh.interior(p); });
+}
+
+bool EdgeBender::measure(const Progress& progress) {
     parallelFor(mErrors.size(), 16, [&](size_t begin, size_t end) {
-        for (auto f = uint32_t(begin); f < end; ++f)
-            if (mMesh.connectivity().alive(PatchId(f))) mErrors[f] = error(PatchId(f), {}, {});
+        for (auto p = uint32_t(begin); p < end && !progress.stopRequested(); ++p)
+            if (mMesh.connectivity().alive(PatchId(p)))
+                mErrors[p] = mFit.error(mMesh.controlPoints(PatchId(p)));
     });
+    return !progress.stopRequested();
 }
 
 std::array<PatchId, 2> EdgeBender::patchesOf(EdgeId e) const {
@@ -145,23 +110,22 @@ std::array<PatchId, 2> EdgeBender::patchesOf(EdgeId e) const {
     return {mMesh.connectivity().face(h), mMesh.connectivity().face(HalfedgeMesh::twin(h))};
 }
 
-MeasuredCurve EdgeBender::curveOf(EdgeId e, Bend bend) const {
+InnerPoints EdgeBender::curveOf(EdgeId e, Bend bend) const {
     const HalfedgeId h = HalfedgeMesh::halfedge(e);
     const LatticePoint a = mMesh.position(mMesh.connectivity().origin(h)),
                        b = mMesh.position(mMesh.connectivity().target(h));
     const auto inner = straightControlPoints(a, b);
     const glm::dvec2 chord = toPixels(b - a), left(-chord.y, chord.x);
-    return measured(
-        {a, inner[0] + toLattice(bend.first * left), inner[1] + toLattice(bend.second * left), b});
+    return {inner[0] + toLattice(bend.first * left), inner[1] + toLattice(bend.second * left)};
 }
 
-LatticeTriangle EdgeBender::controlPoints(PatchId p, EdgeId e, const MeasuredCurve& curve) const {
+LatticeTriangle EdgeBender::controlPoints(PatchId p, EdgeId e, const InnerPoints& curve) const {
     const HalfedgeMesh& c = mMesh.connectivity();
     LatticeTriangle t;
     size_t i = 0;
     for (const HalfedgeId side : c.sides(p)) {
         const EdgeId edge = HalfedgeMesh::edge(side);
-        const auto& inner = edge == e ? curve.inner : mCurves[edge.index].inner;
+        const auto& inner = edge == e ? curve : mCurves[edge.index];
         const bool along = side == HalfedgeMesh::halfedge(edge);
         t.p[i++] = mMesh.position(c.origin(side));
         t.p[i++] = inner[along ? 0 : 1];
@@ -171,40 +135,18 @@ LatticeTriangle EdgeBender::controlPoints(PatchId p, EdgeId e, const MeasuredCur
     return t;
 }
 
-double EdgeBender::error(PatchId p, EdgeId e, const MeasuredCurve& curve) const {
-    const HalfedgeMesh& c = mMesh.connectivity();
-    std::array<glm::dvec2, 3> corners;
-    Outline outline;
-    size_t s = 0;
-    for (const HalfedgeId side : c.sides(p)) {
-        const EdgeId edge = HalfedgeMesh::edge(side);
-        const MeasuredCurve& own = edge == e ? curve : mCurves[edge.index];
-        corners[s] = toPixels(mMesh.position(c.origin(side)));
-        outline.add(corners[s++]);
-        const bool along = side == HalfedgeMesh::halfedge(edge);
-        for (size_t k = 0; k < own.count; ++k) outline.add(own.points[along ? k : own.count - 1 - k]);
-    }
-    return mFit.error(corners, outline.grown());
-}
-
-// With which the patch is certified and even enough.
-std::optional<LatticePoint> EdgeBender::goodInterior(PatchId p, EdgeId e, const MeasuredCurve& curve) const {
-    LatticeTriangle t = controlPoints(p, e, curve);
-    t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
-    if (evenness(t) >= kLeastEvenness && certified(t)) return t.p[kInterior];
-    return std::nullopt;
-}
-
 void EdgeBender::improve(EdgeId e, Bend bend, Candidate& best) const {
     Candidate trial{bend, curveOf(e, bend), {}, {}};
     const auto patches = patchesOf(e);
+    std::array<LatticeTriangle, 2> shapes;
     for (size_t i = 0; i < 2; ++i) {
-        const auto interior = goodInterior(patches[i], e, trial.curve);
-        if (!interior) return;
-        trial.interiors[i] = *interior;
+        LatticeTriangle& t = shapes[i];
+        t = controlPoints(patches[i], e, trial.curve);
+        trial.interiors[i] = t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
+        if (evenness(t) < kLeastEvenness || !certified(t)) return;
     }
     for (size_t i = 0; i < 2; ++i) {
-        trial.errors[i] = error(patches[i], e, trial.curve);
+        trial.errors[i] = mFit.error(shapes[i]);
         if (trial.error() >= best.error()) return;
     }
     best = trial;
@@ -217,7 +159,7 @@ bool EdgeBender::bendEdge(EdgeId e, int round) {
                         {mInteriors[first.index], mInteriors[second.index]},
                         {mErrors[first.index], mErrors[second.index]}};
     Candidate best = now;
-    static const double kArcs[] = {-.04, .04, -.1, .1, -.18, .18};
+    constexpr double kArcs[] = {-.04, .04, -.1, .1, -.18, .18};
     if (round == 0)
         for (const double h : kArcs) improve(e, {h, h}, best);
     for (double step = .04; step > .005; step *= .5) {
@@ -266,7 +208,7 @@ bool EdgeBender::bend(Progress& progress, StageReport& report) {
             if (stop) return false;
         }
     const auto curved =
-        std::count_if(mFree.begin(), mFree.end(), [&](EdgeId e) { return mCurves[e.index].count > 0; });
+        std::count_if(mFree.begin(), mFree.end(), [&](EdgeId e) { return mBends[e.index] != Bend{}; });
     report.figures.emplace_back("curved edges", double(curved));
     report.figures.emplace_back("edges", double(mFree.size()));
     report.figures.emplace_back("error before", before);
@@ -276,8 +218,7 @@ bool EdgeBender::bend(Progress& progress, StageReport& report) {
 
 PatchMesh EdgeBender::takeMesh() {
     for (const EdgeId e : mFree)
-        mMesh.setInnerControlPoints(HalfedgeMesh::halfedge(e), mCurves[e.index].inner[0],
-                                    mCurves[e.index].inner[1]);
+        mMesh.setInnerControlPoints(HalfedgeMesh::halfedge(e), mCurves[e.index][0], mCurves[e.index][1]);
     for (uint32_t p = 0; p < mInteriors.size(); ++p)
         if (mMesh.connectivity().alive(PatchId(p))) mMesh.setInterior(PatchId(p), mInteriors[p]);
     return std::move(mMesh);
@@ -285,10 +226,10 @@ PatchMesh EdgeBender::takeMesh() {
 
 }  // namespace
 
-Result<PatchMesh> bendEdges(PatchMesh mesh, const PolynomialFit& fit, const VectorizeSettings&,
-                            StageReport& report, Progress& progress) {
+Result<PatchMesh> bendEdges(PatchMesh mesh, const Image& picture, StageReport& report, Progress& progress) {
+    const ParameterFit fit(picture, progress.stopToken());
     EdgeBender bender(std::move(mesh), fit);
-    if (!bender.bend(progress, report)) return stopped();
+    if (!bender.measure(progress) || !bender.bend(progress, report)) return stopped();
     return bender.takeMesh();
 }
 
