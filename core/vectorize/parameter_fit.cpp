@@ -230,17 +230,17 @@ ParameterFit::ParameterFit(const Image& picture, const std::stop_token& stop)
         std::vector<float> column(width);
         for (size_t y = begin; y < end && !stop.stop_requested(); ++y)
             for (int c = 0; c < mChannels; ++c) {
-                const size_t last = size_t(mHeight) - 1;
-                const float* middle = picture.plane(c).data() + std::min(y, last) * width;
-                const float* above = picture.plane(c).data() + (y > 0 ? y - 1 : 0) * width;
-                const float* below = picture.plane(c).data() + std::min(y + 1, last) * width;
-                for (size_t x = 0; x < width; ++x) column[x] = .25F * (above[x] + below[x]) + .5F * middle[x];
+                // Across the picture's border there is nothing to smooth with.
+                const size_t last = size_t(mHeight) - 1, row = std::min(y, last);
+                const size_t reach = row > 0 && row < last ? width : 0;
+                const float* middle = picture.plane(c).data() + row * width;
+                for (size_t x = 0; x < width; ++x)
+                    column[x] = .25F * ((middle - reach)[x] + (middle + reach)[x]) + .5F * middle[x];
                 float* out = mPixels.data() + y * (width + 1) * kMaxChannels + c;
-                for (size_t x = 0; x <= width; ++x) {
-                    const float before = column[x > 0 ? x - 1 : 0],
-                                after = column[std::min(x + 1, width - 1)];
-                    out[x * kMaxChannels] = .25F * (before + after) + .5F * column[std::min(x, width - 1)];
-                }
+                out[0] = column[0];
+                for (size_t x = 1; x + 1 < width; ++x)
+                    out[x * kMaxChannels] = .25F * (column[x - 1] + column[x + 1]) + .5F * column[x];
+                out[(width - 1) * kMaxChannels] = out[width * kMaxChannels] = column[width - 1];
             }
     });
     for (int n = kFewestPerSide; n <= kMostPerSide && !stop.stop_requested(); n += 2) mPlaces.emplace_back(n);
@@ -254,15 +254,16 @@ double ParameterFit::errorOf(const LatticeTriangle& patch, const Places& places,
     const Coefficients coefficients(t, {originX + .5, originY + .5});
     Sampled s;
     findPoints(places.cubic.data(), places.quadratic.data(), places.padded, coefficients, s);
-    const float left = float(-originX), right = left + float(mWidth - 1);
-    const float top = float(-originY), bottom = top + float(mHeight - 1);
+    const float left = float(originX), top = float(originY);
+    const float right = float(mWidth - 1), bottom = float(mHeight - 1);
+    const float lastColumn = float(std::max(0, mWidth - 2)), lastRow = float(std::max(0, mHeight - 2));
     const size_t stride = (size_t(mWidth) + 1) * kMaxChannels;
     for (size_t k = 0; k < places.padded; ++k) {
-        if (s.x[k] < left - .5F || s.x[k] > right + .5F || s.y[k] < top - .5F || s.y[k] > bottom + .5F ||
-            s.area[k] < 0)
-            s.area[k] = 0;
-        const float x = std::clamp(s.x[k], left, right) - left, y = std::clamp(s.y[k], top, bottom) - top;
-        const auto column = size_t(x), row = size_t(y);
+        // Colours go on linearly from the outer pixels' middles.
+        const float x = std::clamp(s.x[k] + left, -1.F, right + 1),
+                    y = std::clamp(s.y[k] + top, -1.F, bottom + 1);
+        if (x < -.5F || x > right + .5F || y < -.5F || y > bottom + .5F || s.area[k] < 0) s.area[k] = 0;
+        const auto column = size_t(std::clamp(x, 0.F, lastColumn)), row = size_t(std::clamp(y, 0.F, lastRow));
         const float fx = x - float(column), fy = y - float(row);
         const float* upper = mPixels.data() + row * stride + column * kMaxChannels;
         const float* lower = upper + stride;
