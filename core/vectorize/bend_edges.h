@@ -21,6 +21,6 @@ Result<PatchMesh> bendEdges(PatchMesh mesh, const Image& picture, StageReport& r
 // The smallest Bernstein coefficient of det J over the mean of all 15 (which is the patch's area over the
 // base triangle's) that a bent edge may leave its patches: 1 in an affine patch, 0 at the brink of folding.
 // The splines live in the parametric domain, so an uneven Jacobian costs them detail.
-constexpr double kLeastEvenness = .1;
+constexpr double kLeastEvenness = .2;
 
 }  // namespace tessera
