@@ -224,7 +224,8 @@ void EquationBuilder::addSide(HalfedgeId h, size_t samples, uint32_t firstRow, d
 void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
     const HalfedgeMesh& mesh = mMesh.connectivity();
     constexpr double kSamplesPerPx = .7;
-    constexpr int kLeast = 4, kMost = 16;
+    // Sites are a tenth of an edge apart: fewer points would let colours swing between them.
+    constexpr int kLeast = 11, kMost = 21;
     struct Seam {
         HalfedgeId h;
         size_t samples;

@@ -48,8 +48,8 @@ struct VectorizeSettings {
     double termsPerPatch = 48;  // of the colour splines, over all channels, on the average
     // Along edges that are no features the colours of both sides differ by so many levels (of 255) on the
     // mean, and by so many at the 95th percentile, at most.
-    double seamMeanLevels = 2.8;
-    double seamHighLevels = 8.5;
+    double seamMeanLevels = 2.9;
+    double seamHighLevels = 8.8;
     double seamGradientWeight = .005;  // of a squared difference a pixel off, against that on the edge
 
     bool operator==(const VectorizeSettings&) const = default;

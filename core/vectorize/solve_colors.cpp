@@ -22,8 +22,8 @@ constexpr int kSamplesPerSide = 2;
 
 // The weight of seams is found in so many solutions, each from the one before.
 constexpr int kSeamPasses = 4;
-static double env(const char*n,double d){return getenv(n)?atof(getenv(n)):d;}
-const double kFirstTolerance = env("T1", 1e-2), kTolerance = env("T2", 3e-3);
+// Of the residual of the patches by themselves: to find the weight, and in the end.
+constexpr double kFirstTolerance = 3e-3, kTolerance = 1e-3;
 constexpr double kLeastSeamWeight = .05, kMostSeamWeight = 50;
 
 // By patch id; empty where there is no patch.
@@ -57,7 +57,8 @@ class ChannelSystem {
                 VectorXf targets(Eigen::Index(patch.rowIds.size())), rowWeights(targets.size());
                 for (size_t i = 0; i < patch.rowIds.size(); ++i) {
                     rowWeights(Eigen::Index(i)) = mWeights(patch.rowIds[i]);
-                    targets(Eigen::Index(i)) = mWeights(patch.rowIds[i]) * m.targets(patch.rowIds[i], channel);
+                    targets(Eigen::Index(i)) =
+                        mWeights(patch.rowIds[i]) * m.targets(patch.rowIds[i], channel);
                 }
                 const auto rows = patch.rows.leftCols(n);
                 mRight[p] = patch.moments.col(channel).head(n) + (rows.transpose() * targets).cast<double>();
@@ -122,7 +123,8 @@ class ChannelSystem {
     VectorXf mTotals;                // by row
 };
 
-// Preconditioned conjugate gradients from x (or nothing), until the residual is `tolerance` of that of the patches by themselves.
+// Preconditioned conjugate gradients from x (or nothing), until the residual is `tolerance` of that of the
+// patches by themselves.
 PatchVectors conjugateGradients(ChannelSystem& system, PatchVectors x, double tolerance, int& iterations,
                                 Progress& progress) {
     constexpr int kMaxIterations = 60;
@@ -181,7 +183,8 @@ double seamExcess(const ColorEquations& equations, const std::vector<SiteChoice>
     double sum = 0, length = 0;
     for (size_t i = 0; i < lengths.size(); ++i) {
         double level = 0;
-        for (int c = 0; c < channels; ++c) level += std::abs(double(differences[size_t(c)][i])) * 255 / channels;
+        for (int c = 0; c < channels; ++c)
+            level += std::abs(double(differences[size_t(c)][i])) * 255 / channels;
         levels.emplace_back(float(level), lengths[i]);
         sum += level * lengths[i];
         length += lengths[i];
@@ -191,43 +194,58 @@ double seamExcess(const ColorEquations& equations, const std::vector<SiteChoice>
     double above = .05 * length;
     size_t i = levels.size();
     while (i > 1 && above > 0) above -= levels[--i].second;
-    return std::max(sum / length / settings.seamMeanLevels, double(levels[i].first) / settings.seamHighLevels);
+    return std::max(sum / length / settings.seamMeanLevels,
+                    double(levels[i].first) / settings.seamHighLevels);
 }
 
-Image inOpponentBasis(Image image) {
-    float* planes[3] = {image.plane(0).data(), image.plane(1).data(), image.plane(2).data()};
-    fromWorking(ColourBasis::Opponent, planes, image.planeSize());
-    return image;
-}
+// Finds the weight at which the excess is 1, by secants: seams go with a power of their weight, about the cube
+// root at first.
+class SeamWeightSearch {
+  public:
+    double next(double weight, double excess) {
+        const double w = std::log(weight), e = std::log(std::max(excess, 1e-3));
+        if (mKnown && std::abs(w - mLastWeight) > 1e-3)
+            mSlope = std::clamp((e - mLastExcess) / (w - mLastWeight), kSteepest, kFlattest);
+        mKnown = true;
+        mLastWeight = w;
+        mLastExcess = e;
+        return std::clamp(std::exp(w - e / mSlope), kLeastSeamWeight, kMostSeamWeight);
+    }
+
+  private:
+    static constexpr double kSteepest = -.6, kFlattest = -.2;
+    double mSlope = -1.0 / 3, mLastWeight = 0, mLastExcess = 0;
+    bool mKnown = false;
+};
 
 }  // namespace
 
 Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& sharp,
                               const VectorizeSettings& settings, StageReport& report, Progress& progress) {
     const SiteBudget budget{settings.termsPerPatch};
-    const std::vector<SiteChoice> choices = chooseSites(mesh, inOpponentBasis(sharp), budget, progress);
+    const std::vector<SiteChoice> choices = chooseSites(mesh, sharp, budget, progress);
     if (!progress.step(.3)) return stopped();
     const SeamWeights seams{1, settings.seamGradientWeight};
-    const ColorEquations equations =
-        buildEquations(mesh, inOpponentBasis(image), choices, seams, kSamplesPerSide, progress);
+    const ColorEquations equations = buildEquations(mesh, image, choices, seams, kSamplesPerSide, progress);
     if (!progress.step(.6)) return stopped();
 
     std::array<PatchVectors, kMaxChannels> factors;
     VectorXf weights = VectorXf::Ones(equations.targets.rows());
     int iterations = 0;
     double seamWeight = 1;
+    SeamWeightSearch search;
     for (int pass = 0; pass < kSeamPasses; ++pass) {
         const bool last = pass + 1 == kSeamPasses;
         for (int c = 0; c < mesh.channels(); ++c) {
             ChannelSystem system(equations, choices, weights, c);
-            factors[size_t(c)] = conjugateGradients(system, std::move(factors[size_t(c)]), last ? kTolerance : kFirstTolerance, iterations, progress);
+            factors[size_t(c)] =
+                conjugateGradients(system, std::move(factors[size_t(c)]), last ? kTolerance : kFirstTolerance,
+                                   iterations, progress);
             if (!progress.step(.6 + .4 * (pass * mesh.channels() + c + 1) / (kSeamPasses * mesh.channels())))
                 return stopped();
         }
-        if (last) break;
-        // Seams go about with the third root of their weight.
-        const double excess = seamExcess(equations, choices, factors, mesh.channels(), weights, settings);
-        seamWeight = std::clamp(seamWeight * excess * excess * excess, kLeastSeamWeight, kMostSeamWeight);
+        seamWeight = search.next(
+            seamWeight, seamExcess(equations, choices, factors, mesh.channels(), weights, settings));
         weights.tail(weights.size() - equations.pixelRows).setConstant(float(seamWeight));
     }
     report.figures.push_back({"seam weight", seamWeight});

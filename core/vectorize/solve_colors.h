@@ -13,7 +13,7 @@
 namespace tessera {
 
 // Stage "colours", variant "joint". `sharp` is the picture without the blur of its features
-// (virtual_sharp.h). The result is in the opponent basis.
+// (virtual_sharp.h). Both in the opponent basis, as the result is.
 Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& sharp,
                               const VectorizeSettings& settings, StageReport& report, Progress& progress);
 

@@ -6,6 +6,8 @@
 #include <map>
 
 #include "core/base/parallel.h"
+#include "core/mesh/colour_basis.h"
+#include "core/vectorize/bend_edges.h"
 #include "core/vectorize/features.h"
 #include "core/vectorize/fit_colors.h"
 #include "core/vectorize/fit_curves.h"
@@ -28,7 +30,7 @@ const std::map<std::string, std::vector<StageVariants>>& methods() {
          {{"features", .06, {"subpixel", "none"}},
           {"initial-mesh", .04, {"delaunay"}},
           {"simplify", .60, {"true-error"}},
-          {"curves", .10, {"straight"}},
+          {"curves", .10, {"error", "straight"}},
           {"colours", .20, {"joint"}}}},
         {"paper",
          {{"features", .03, {"canny", "none"}},
@@ -105,6 +107,12 @@ Result<VectorImage> runPaper(const Image& image, const VectorizeSettings& settin
     return result;
 }
 
+Image inOpponentBasis(Image image) {
+    float* planes[3] = {image.plane(0).data(), image.plane(1).data(), image.plane(2).data()};
+    fromWorking(ColourBasis::Opponent, planes, image.planeSize());
+    return image;
+}
+
 // The initial mesh has this many times the faces wanted.
 constexpr double kInitialSurplus = 3;
 
@@ -141,7 +149,8 @@ Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& sett
     if (!cut) return tl::unexpected(cut.error());
     if (observe.cutMesh) observe.cutMesh(*cut);
 
-    const PolynomialFit fit(sharp);
+    const Image opponent = inOpponentBasis(sharp);
+    const PolynomialFit fit(opponent);
     auto refined = run("simplify", [&](StageReport& r) {
         return refine(std::move(*cut), fit, settings, r, result.report.shortfall, progress);
     });
@@ -149,12 +158,15 @@ Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& sett
     PatchMesh mesh = toPatchMesh(*refined, image.channels());
     if (observe.refined) observe.refined(mesh);
 
-    auto curved = run("curves", [&](StageReport&) -> Result<PatchMesh> { return std::move(mesh); });
+    auto curved = run("curves", [&](StageReport& r) -> Result<PatchMesh> {
+        if (variants.at("curves") == "straight") return std::move(mesh);
+        return bendEdges(std::move(mesh), opponent, r, progress);
+    });
     if (!curved) return tl::unexpected(curved.error());
     if (observe.curves) observe.curves(*curved);
 
     auto coloured = run("colours", [&](StageReport& r) {
-        return solveColors(std::move(*curved), image, sharp, settings, r, progress);
+        return solveColors(std::move(*curved), inOpponentBasis(image), opponent, settings, r, progress);
     });
     if (!coloured) return tl::unexpected(coloured.error());
     result.mesh = std::move(*coloured);
