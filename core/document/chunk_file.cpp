@@ -56,6 +56,12 @@ std::vector<uint8_t> packChunks(uint32_t version, std::span<const Chunk> chunks)
     return head.take();
 }
 
+uint32_t chunkFileVersion(std::span<const uint8_t> bytes) {
+    ByteReader head(bytes);
+    head.raw(kMagic.size());
+    return head.u32();
+}
+
 bool startsLikeChunkFile(std::span<const uint8_t> bytes) {
     return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
 }
@@ -91,7 +97,7 @@ Result<std::vector<Chunk>> unpackChunks(std::span<const uint8_t> bytes, uint32_t
         const uint64_t size = head.u64();
         checksums[i] = head.u64();
         const std::string name = "the table's entry for chunk " + tagText(chunk.tag);
-        if (flags > kSafeToCopyFlag) return damaged(name + " has flags that version 1 does not know");
+        if (flags > kSafeToCopyFlag) return damaged(name + " has flags that no version knows");
         if (chunk.offset != expected) return damaged(name + " names a wrong offset");
         if (expected > bytes.size() || size > bytes.size() - expected)
             return damaged("it ends within chunk " + tagText(chunk.tag) + ", which begins at byte " +
@@ -141,7 +147,7 @@ Result<std::vector<uint8_t>> inflated(std::span<const uint8_t> bytes) {
         const auto rest = reader.raw(reader.left());
         return std::vector<uint8_t>(rest.begin(), rest.end());
     }
-    if (packing != Zstd) return damaged("is packed in a way that version 1 does not know");
+    if (packing != Zstd) return damaged("is packed in a way that no version knows");
     const uint64_t size = reader.u64();
     if (reader.failed() || size / kMaxInflation > reader.left())
         return damaged("has a length that cannot be");

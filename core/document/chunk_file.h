@@ -32,6 +32,9 @@ std::vector<uint8_t> packChunks(uint32_t version, std::span<const Chunk> chunks)
 // and every checksum; refuses versions above `newestVersion`.
 Result<std::vector<Chunk>> unpackChunks(std::span<const uint8_t> bytes, uint32_t newestVersion);
 
+// The version of a file that unpackChunks takes.
+uint32_t chunkFileVersion(std::span<const uint8_t> bytes);
+
 bool startsLikeChunkFile(std::span<const uint8_t> bytes);
 
 // Bytes as zstd where that is less than 7/8 of them, else as they are; a leading byte says which. No more

@@ -8,7 +8,6 @@
 
 #include "core/base/atomic_file.h"
 #include "core/document/chunk_file.h"
-#include "core/document/colour_codec.h"
 #include "core/document/info_codec.h"
 #include "core/document/mesh_codec.h"
 
@@ -52,14 +51,14 @@ class ChunkIndex {
     const std::vector<Chunk>& mChunks;
 };
 
-Result<void> decodeMeshChunks(const ChunkIndex& index, Document& document) {
+Result<void> decodeMeshChunks(const ChunkIndex& index, uint32_t version, Document& document) {
     std::array<const Chunk*, 4> chunks{};
     const std::array tags{kConnectivity, kGeometry, kCurves, kColours};
     for (size_t i = 0; i < tags.size(); ++i) {
         chunks[i] = index.find(tags[i]);
         if (!chunks[i]) return failure(ErrorCode::DamagedDocument, "it has no chunk " + tagText(tags[i]));
     }
-    auto mesh = decodeMesh({chunks[0]->bytes, chunks[1]->bytes, chunks[2]->bytes, chunks[3]->bytes});
+    auto mesh = decodeMesh({chunks[0]->bytes, chunks[1]->bytes, chunks[2]->bytes, chunks[3]->bytes}, version);
     if (!mesh) return damagedChunk(*chunks[size_t(mesh.error().chunk)], mesh.error().what);
     document.mesh = std::move(mesh->mesh);
     document.colourStep = mesh->colourStep;
@@ -103,7 +102,9 @@ std::string quoted(const std::string& path) {
 }  // namespace
 
 Result<std::vector<uint8_t>> encodeDocument(Document& document) {
-    if (!document.colourStep) document.colourStep = defaultColourStep();
+    if (!document.colourStep)
+        document.colourStep = chooseColourStep(
+            document.mesh, document.difference ? std::optional(document.difference->psnr) : std::nullopt);
     const auto mesh = encodeMesh(document.mesh, *document.colourStep);
     if (!mesh) return tl::unexpected<Error>(mesh.error());
 
@@ -145,7 +146,7 @@ Result<Document> decodeDocument(std::span<const uint8_t> bytes) {
         else if (index.find(chunk.tag) != &chunk)
             return damagedChunk(chunk, "is there twice");
     }
-    return decodeMeshChunks(index, document)
+    return decodeMeshChunks(index, chunkFileVersion(bytes), document)
         .and_then([&] { return decodeInfoChunks(index, document); })
         .map([&] { return std::move(document); });
 }

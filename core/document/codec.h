@@ -11,7 +11,7 @@
 
 namespace tessera {
 
-constexpr uint32_t kFormatVersion = 1;
+constexpr uint32_t kFormatVersion = 2;
 
 struct ChunkSize {
     std::string tag;

@@ -142,9 +142,14 @@ std::string splineViolation(const PatchSpline& spline, int channels) {
         const int terms = spline.terms[size_t(c)];
         if (terms == 1 || terms == 2 || (c >= channels && terms != 0))
             return "has a number of terms that cannot be";
-        const size_t centres = spline.centres.empty() ? kDefaultCentreCount : spline.centres.size();
-        if (size_t(terms) > centres) return "has fewer centres than terms";
+        if (size_t(terms) > spline.centreCount()) return "has fewer centres than terms";
     }
+    std::array<bool, kCentreSites> listed{};
+    for (const uint8_t site : spline.sites) {
+        if (site >= kCentreSites || listed[site]) return "has a list of sites that cannot be";
+        listed[site] = true;
+    }
+    if (!spline.sites.empty() && !spline.centres.empty()) return "has both sites and centres";
     if (spline.centres.size() > 255) return "has more than 255 centres";
     if (spline.coefficients.size() != spline.offset(channels)) return "has the wrong number of coefficients";
     const auto finite = [](float f) { return std::isfinite(f); };

@@ -28,8 +28,9 @@ struct UnknownChunk {
 struct Document {
     PatchMesh mesh;
     // The step, in colour units (1 is 255 levels), to which colours are rounded in the file. Chosen at the
-    // first encoding so that no pixel moves by more than 0.1 level, then kept for ever: decoding and encoding
-    // again gives the same bytes.
+    // first encoding, then kept for ever: decoding and encoding again gives the same bytes. For splines of
+    // the default centres no pixel moves by more than 0.1 level; for splines on sites the picture loses at
+    // most 0.1 dB of the PSNR in `difference`, or of 45 dB where there is none.
     std::optional<double> colourStep;
     VectorizeSettings settings;
     VectorizeReport report;

@@ -31,6 +31,14 @@ size_t activity(int64_t sum) {
     return std::min<size_t>(size_t(bitLength(sum)), kActivities - 1);
 }
 
+// Kept where codeGeometry can see that it is too far.
+LatticePoint near(Wide p) {
+    const auto bounded = [](int64_t c) {
+        return int32_t(std::clamp<int64_t>(c, -kMaxCoordinate, kMaxCoordinate));
+    };
+    return {bounded(p.x), bounded(p.y)};
+}
+
 // A point as its difference from what it is expected to be. Each coordinate has models by how far off the
 // neighbouring values were.
 struct PointModels {
@@ -42,12 +50,7 @@ struct PointModels {
         int64_t dx = point.x - expected.x, dy = point.y - expected.y;
         coder.number(models[0][activity(context)], dx);
         coder.number(models[1][activity(context + std::abs(dx))], dy);
-        if (!Coder::kEncodes) {
-            const auto bounded = [](int64_t c) {
-                return int32_t(std::clamp<int64_t>(c, -kMaxCoordinate, kMaxCoordinate));
-            };
-            point = {bounded(expected.x + dx), bounded(expected.y + dy)};
-        }
+        if (!Coder::kEncodes) point = near({expected.x + dx, expected.y + dy});
         return std::abs(dx) + std::abs(dy);
     }
 };
@@ -83,10 +86,19 @@ void codePositions(Coder& coder, const FileMesh& mesh, FileGeometry& g) {
         }
 }
 
+// Whether a point is where it is expected, or an edge straight, from version 2 on: most are.
 template <class Coder>
-void codeInner(Coder& coder, const FileMesh& mesh, FileGeometry& g) {
+bool codeFlag(Coder& coder, BitModel& model, bool value) {
+    coder.bit(model, value);
+    return value;
+}
+
+template <class Coder>
+void codeInner(Coder& coder, bool flags, const FileMesh& mesh, FileGeometry& g) {
     // Inside or on the border; first or second point.
     auto models = std::make_unique<std::array<std::array<PointModels, 2>, 2>>();
+    std::array<std::array<std::array<BitModel, 3>, 3>, 2> curved;
+    std::vector<uint8_t> curves(mesh.vertexCount, 0);  // so far, at each vertex
     int64_t context = 0;
     for (size_t e = 0; e < mesh.edges.size(); ++e) {
         const FileMesh::Edge& edge = mesh.edges[e];
@@ -94,6 +106,16 @@ void codeInner(Coder& coder, const FileMesh& mesh, FileGeometry& g) {
         auto& m = (*models)[edge.border];
         auto& [c1, c2] = g.inner[e];
         const Wide third = thirdOfWay(a, b), straight2 = thirdOfWay(b, a);
+        if (flags) {
+            const auto count = [&](uint32_t v) { return std::min<size_t>(curves[v], 2); };
+            const std::array straight{near(third), near(straight2)};
+            if (!codeFlag(coder, curved[edge.border][count(edge.from)][count(edge.to)],
+                          g.inner[e] != straight)) {
+                g.inner[e] = straight;
+                continue;
+            }
+            for (const uint32_t v : {edge.from, edge.to}) curves[v] = uint8_t(std::min(curves[v] + 1, 2));
+        }
         const int64_t first = m[0].code(coder, c1, third, edge.border ? 0 : context);
         // A curve bends to one side: its second point is off like its first.
         const Wide bend{c1.x - third.x, c1.y - third.y};
@@ -104,8 +126,10 @@ void codeInner(Coder& coder, const FileMesh& mesh, FileGeometry& g) {
 }
 
 template <class Coder>
-void codeInteriors(Coder& coder, const FileMesh& mesh, FileGeometry& g) {
+void codeInteriors(Coder& coder, bool flags, const FileMesh& mesh, FileGeometry& g) {
     auto models = std::make_unique<PointModels>();
+    std::array<BitModel, 2> moved;
+    bool last = false;
     int64_t context = 0;
     for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
         // 1/4 of the six side points less 1/6 of the corners (defaultInterior).
@@ -120,16 +144,23 @@ void codeInteriors(Coder& coder, const FileMesh& mesh, FileGeometry& g) {
             }
         }
         const Wide expected{dividedRounded(twelve.x, 12), dividedRounded(twelve.y, 12)};
+        if (flags) {
+            last = codeFlag(coder, moved[last], g.interior[f] != near(expected));
+            if (!last) {
+                g.interior[f] = near(expected);
+                continue;
+            }
+        }
         const int64_t off = models->code(coder, g.interior[f], expected, context);
         context = (context + 2 * off) / 2;
     }
 }
 
 template <class Coder>
-std::string codeGeometry(Coder& coder, const FileMesh& mesh, FileGeometry& g) {
+std::string codeGeometry(Coder& coder, bool flags, const FileMesh& mesh, FileGeometry& g) {
     codePositions(coder, mesh, g);
-    codeInner(coder, mesh, g);
-    codeInteriors(coder, mesh, g);
+    codeInner(coder, flags, mesh, g);
+    codeInteriors(coder, flags, mesh, g);
     const auto outside = [](LatticePoint p) {
         return std::abs(int64_t(p.x)) >= kMaxCoordinate || std::abs(int64_t(p.y)) >= kMaxCoordinate;
     };
@@ -218,14 +249,15 @@ std::string codeAttributes(Coder& coder, const FileMesh& mesh, FileGeometry& g) 
 }  // namespace
 
 std::string encodeGeometry(RangeEncoder& coder, const FileMesh& mesh, FileGeometry& geometry) {
-    return codeGeometry(coder, mesh, geometry);
+    return codeGeometry(coder, true, mesh, geometry);
 }
 
-std::string decodeGeometry(RangeDecoder& coder, const FileMesh& mesh, FileGeometry& geometry) {
+std::string decodeGeometry(RangeDecoder& coder, uint32_t version, const FileMesh& mesh,
+                           FileGeometry& geometry) {
     geometry.positions.resize(mesh.vertexCount);
     geometry.inner.resize(mesh.edges.size());
     geometry.interior.resize(mesh.triangles.size());
-    std::string wrong = codeGeometry(coder, mesh, geometry);
+    std::string wrong = codeGeometry(coder, version > 1, mesh, geometry);
     return coder.overrun() ? "ends before its control points do" : wrong;
 }
 

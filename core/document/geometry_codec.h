@@ -43,9 +43,11 @@ constexpr int kMaxPictureSide = 1 << 21;
 // sides.
 constexpr int64_t kMaxCoordinate = int64_t{1} << 30;
 
-// Both directions return what is wrong, or empty. Decoding sizes the arrays by the mesh.
+// Both directions return what is wrong, or empty. Decoding sizes the arrays by the mesh. Encoding is of the
+// newest version.
 std::string encodeGeometry(RangeEncoder& coder, const FileMesh& mesh, FileGeometry& geometry);
-std::string decodeGeometry(RangeDecoder& coder, const FileMesh& mesh, FileGeometry& geometry);
+std::string decodeGeometry(RangeDecoder& coder, uint32_t version, const FileMesh& mesh,
+                           FileGeometry& geometry);
 std::string encodeAttributes(RangeEncoder& coder, const FileMesh& mesh, FileGeometry& geometry);
 std::string decodeAttributes(RangeDecoder& coder, const FileMesh& mesh, FileGeometry& geometry);
 

@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/document/byte_stream.h"
 #include "core/document/colour_codec.h"
+#include "core/document/factor_codec.h"
 #include "core/document/file_mesh.h"
 #include "core/document/geometry_codec.h"
 #include "core/document/range_coder.h"
@@ -17,6 +18,8 @@ namespace {
 
 constexpr uint32_t kMaxFaces = 1u << 26;
 constexpr size_t kGrain = 64;
+// What storing may take from the PSNR of a document that knows its own, and what is assumed of others.
+constexpr double kPsnrLoss = .09, kAssumedPsnr = 45, kLeastPsnr = 20, kLargestPsnr = 60;
 
 tl::unexpected<Error> broken(const std::string& what) {
     return failure(ErrorCode::Internal, "the mesh cannot be stored: it " + what + "; please report this");
@@ -128,6 +131,105 @@ PatchMesh assemble(const FileMesh& file, const FileGeometry& g, int channels,
     return mesh;
 }
 
+// How the colours of a document of version 2 are stored.
+enum ColourMethod : uint8_t { Values = 0, Factors = 1 };
+
+bool usesSites(const PatchMesh& mesh) {
+    bool uses = false;
+    mesh.forEachPatch([&](PatchId p) { uses = uses || !mesh.spline(p).sites.empty(); });
+    return uses;
+}
+
+tl::expected<std::vector<uint8_t>, std::string> encodeColourChunk(const PatchMesh& mesh,
+                                                                  const FileOrder& order,
+                                                                  const FileMesh& file, const FileGeometry& g,
+                                                                  double step) {
+    const int channels = mesh.channels();
+    for (const FaceId f : order.faces)
+        if (const auto wrong = splineViolation(mesh.spline(f), channels); !wrong.empty())
+            return tl::unexpected<std::string>("has a patch whose colour " + wrong);
+    const bool factors = usesSites(mesh);
+    RangeEncoder coder;
+    std::string wrong;
+    size_t least = 0;
+    const auto forEach = [&](auto&& visit) {
+        parallelFor(order.faces.size(), kGrain, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) visit(i, mesh.spline(order.faces[i]));
+        });
+    };
+    if (factors) {
+        const std::vector<double> areas = relativeAreas(file, g);
+        const std::vector<bool> features = featuresOf(g);
+        std::vector<FactorColour> colours(order.faces.size());
+        forEach([&](size_t i, const PatchSpline& spline) {
+            colours[i] = quantizedFactors(spline, channels, step, areas[i]);
+        });
+        wrong = encodeFactors(coder, {file, features, areas, channels, step}, colours);
+        least = leastFactorBytes(colours, channels);
+    } else {
+        std::vector<FileColour> colours(order.faces.size());
+        forEach([&](size_t i, const PatchSpline& spline) { colours[i] = quantized(spline, channels, step); });
+        wrong = encodeColours(coder, file, featuresOf(g), channels, colours);
+    }
+    if (!wrong.empty()) return tl::unexpected<std::string>(wrong);
+    ByteWriter writer;
+    writer.f64(step);
+    writer.u8(uint8_t(mesh.colourBasis()));
+    writer.u8(factors ? Factors : Values);
+    std::vector<uint8_t> stream = coder.finish();
+    // A byte for each patch, so that a reader can bound what it takes.
+    stream.resize(std::max({stream.size(), least, order.faces.size()}));
+    writer.raw(stream);
+    return writer.take();
+}
+
+struct DecodedColours {
+    double step = 0;
+    ColourBasis basis = ColourBasis::Rgb;
+    std::vector<PatchSpline> splines;
+};
+
+tl::expected<DecodedColours, std::string> decodeColourChunk(std::span<const uint8_t> bytes, uint32_t version,
+                                                            const FileMesh& file, const FileGeometry& g,
+                                                            int channels) {
+    ByteReader head(bytes);
+    DecodedColours colours;
+    colours.step = head.f64();
+    if (!(colours.step >= 1e-9 && colours.step <= 1))
+        return tl::unexpected<std::string>("has a colour step that cannot be");
+    uint8_t method = Values;
+    if (version > 1) {
+        const uint8_t basis = head.u8();
+        if (basis > uint8_t(ColourBasis::Opponent))
+            return tl::unexpected<std::string>("has a basis that cannot be");
+        colours.basis = ColourBasis(basis);
+        method = head.u8();
+        if (method > Factors) return tl::unexpected<std::string>("has colours of a kind that cannot be");
+    }
+    const auto stream = head.raw(head.left());
+    RangeDecoder coder(stream);
+    std::string wrong;
+    if (method == Factors) {
+        const std::vector<double> areas = relativeAreas(file, g);
+        const std::vector<bool> features = featuresOf(g);
+        wrong = decodeFactors(coder, {file, features, areas, channels, colours.step}, stream.size(),
+                              colours.splines);
+    } else {
+        std::vector<FileColour> values;
+        wrong = decodeColours(coder, file, featuresOf(g), channels, values);
+        colours.splines.resize(values.size());
+        if (wrong.empty())
+            parallelFor(values.size(), kGrain, [&](size_t begin, size_t end) {
+                for (size_t i = begin; i < end; ++i)
+                    colours.splines[i] = dequantized(values[i], channels, colours.step);
+            });
+    }
+    for (size_t i = 0; i < colours.splines.size() && wrong.empty(); ++i)
+        wrong = splineViolation(colours.splines[i], channels);
+    if (!wrong.empty()) return tl::unexpected<std::string>(wrong);
+    return colours;
+}
+
 bool sizesGood(int64_t width, int64_t height, int channels) {
     return width >= 1 && height >= 1 && width <= kMaxPictureSide && height <= kMaxPictureSide &&
            (channels == 3 || channels == 4);
@@ -135,16 +237,26 @@ bool sizesGood(int64_t width, int64_t height, int channels) {
 
 }  // namespace
 
+double chooseColourStep(const PatchMesh& mesh, std::optional<double> psnr) {
+    if (!usesSites(mesh)) return defaultColourStep();
+    // kPsnrLoss dB are this share of the error that the picture has already.
+    const double share = std::pow(10, kPsnrLoss / 10) - 1;
+    // fmin and fmax, since a PSNR may be anything that a file had.
+    const double known = std::fmax(std::fmin(psnr.value_or(kAssumedPsnr), kLargestPsnr), kLeastPsnr);
+    const double error = std::pow(10, -known / 10);
+    double factors = 0;
+    mesh.forEachPatch([&](PatchId p) {
+        for (int c = 0; c < mesh.channels(); ++c)
+            factors += std::max<int>(3, mesh.spline(p).terms[size_t(c)]);
+    });
+    return factorStep(share * error * mesh.channels(), factors / double(mesh.patchCount()));
+}
+
 Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep) {
     const int channels = mesh.channels();
     const HalfedgeMesh& connectivity = mesh.connectivity();
     if (!sizesGood(mesh.width(), mesh.height(), channels))
         return broken("has a size that the format does not hold");
-    bool storable = mesh.colourBasis() == ColourBasis::Rgb;
-    mesh.forEachPatch(
-        [&](PatchId p) { storable = storable && mesh.spline(p).sites.empty(); });
-    if (!storable)
-        return broken("has colours in the opponent basis or on chosen sites, which the format lacks");
     if (connectivity.faceCount() == 0 || connectivity.faceCount() > kMaxFaces)
         return broken("has no patches, or more than the format holds");
 
@@ -164,7 +276,7 @@ Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep) {
     if (const auto wrong = gatherEdges(mesh, halfedges, g); !wrong.empty()) return broken(wrong);
     if (const auto wrong = gatherJoins(mesh, file, halfedges, fileVertex, g); !wrong.empty())
         return broken(wrong);
-    RangeEncoder geometryCoder, curveCoder, colourCoder;
+    RangeEncoder geometryCoder, curveCoder;
     if (const auto wrong = encodeGeometry(geometryCoder, file, g); !wrong.empty()) return broken(wrong);
     if (const auto wrong = borderViolation(file, g); !wrong.empty()) return broken(wrong);
     if (const auto wrong = encodeAttributes(curveCoder, file, g); !wrong.empty()) return broken(wrong);
@@ -172,13 +284,8 @@ Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep) {
     for (const FaceId f : order.faces)
         if (const auto wrong = splineViolation(mesh.spline(f), channels); !wrong.empty())
             return broken("has a patch whose colour " + wrong);
-    std::vector<FileColour> colours(order.faces.size());
-    parallelFor(colours.size(), kGrain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
-            colours[i] = quantized(mesh.spline(order.faces[i]), channels, colourStep);
-    });
-    if (const auto wrong = encodeColours(colourCoder, file, featuresOf(g), channels, colours); !wrong.empty())
-        return broken(wrong);
+    auto colours = encodeColourChunk(mesh, order, file, g, colourStep);
+    if (!colours) return broken(colours.error());
 
     MeshChunks chunks;
     ByteWriter head;
@@ -190,16 +297,11 @@ Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep) {
     chunks.connectivity = head.take();
     chunks.geometry = geometryCoder.finish();
     chunks.curves = curveCoder.finish();
-    ByteWriter colourHead;
-    colourHead.f64(colourStep);
-    colourHead.raw(colourCoder.finish());
-    chunks.colours = colourHead.take();
-    // A byte for each patch, so that a reader can bound what it takes.
-    if (chunks.colours.size() < file.triangles.size()) chunks.colours.resize(file.triangles.size());
+    chunks.colours = std::move(*colours);
     return chunks;
 }
 
-tl::expected<DecodedMesh, MeshDamage> decodeMesh(const MeshChunkBytes& chunks) {
+tl::expected<DecodedMesh, MeshDamage> decodeMesh(const MeshChunkBytes& chunks, uint32_t version) {
     const auto damage = [](auto chunk, std::string what) {
         return tl::unexpected<MeshDamage>(MeshDamage{chunk, std::move(what)});
     };
@@ -224,31 +326,19 @@ tl::expected<DecodedMesh, MeshDamage> decodeMesh(const MeshChunkBytes& chunks) {
         return damage(MeshDamage::Connectivity, std::move(wrong));
 
     RangeDecoder geometryCoder(chunks.geometry), curveCoder(chunks.curves);
-    if (auto wrong = decodeGeometry(geometryCoder, file, g); !wrong.empty())
+    if (auto wrong = decodeGeometry(geometryCoder, version, file, g); !wrong.empty())
         return damage(MeshDamage::Geometry, std::move(wrong));
     if (auto wrong = borderViolation(file, g); !wrong.empty())
         return damage(MeshDamage::Geometry, std::move(wrong));
     if (auto wrong = decodeAttributes(curveCoder, file, g); !wrong.empty())
         return damage(MeshDamage::Curves, std::move(wrong));
 
-    ByteReader colourHead(chunks.colours);
+    auto colours = decodeColourChunk(chunks.colours, version, file, g, channels);
+    if (!colours) return damage(MeshDamage::Colours, std::move(colours.error()));
     DecodedMesh decoded;
-    decoded.colourStep = colourHead.f64();
-    if (!(decoded.colourStep >= 1e-9 && decoded.colourStep <= 1))
-        return damage(MeshDamage::Colours, "has a colour step that cannot be");
-    RangeDecoder colourCoder(colourHead.raw(colourHead.left()));
-    std::vector<FileColour> colours;
-    if (auto wrong = decodeColours(colourCoder, file, featuresOf(g), channels, colours); !wrong.empty())
-        return damage(MeshDamage::Colours, std::move(wrong));
-    std::vector<PatchSpline> splines(colours.size());
-    parallelFor(colours.size(), kGrain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
-            splines[i] = dequantized(colours[i], channels, decoded.colourStep);
-    });
-    for (const PatchSpline& spline : splines)
-        if (auto wrong = splineViolation(spline, channels); !wrong.empty())
-            return damage(MeshDamage::Colours, std::move(wrong));
-    decoded.mesh = assemble(file, g, channels, std::move(splines));
+    decoded.colourStep = colours->step;
+    decoded.mesh = assemble(file, g, channels, std::move(colours->splines));
+    decoded.mesh.setColourBasis(colours->basis);
     return decoded;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,11 @@ namespace tessera {
 struct MeshChunks {
     std::vector<uint8_t> connectivity, geometry, curves, colours;
 };
+
+// The step for a mesh that is stored for the first time: for splines of the default centres
+// defaultColourStep(); for splines on sites the one by which the mesh's picture, if its PSNR is known, loses
+// 0.1 dB of it, but is taken to be from 20 to 60 dB.
+double chooseColourStep(const PatchMesh& mesh, std::optional<double> psnr);
 
 // Fails with Internal where the mesh is not one that decodeMesh would accept; the message says why.
 Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep);
@@ -29,6 +35,6 @@ struct MeshDamage {
     enum { Connectivity, Geometry, Curves, Colours } chunk = Connectivity;
     std::string what;
 };
-tl::expected<DecodedMesh, MeshDamage> decodeMesh(const MeshChunkBytes& chunks);
+tl::expected<DecodedMesh, MeshDamage> decodeMesh(const MeshChunkBytes& chunks, uint32_t version);
 
 }  // namespace tessera

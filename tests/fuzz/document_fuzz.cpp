@@ -28,7 +28,8 @@ void tryDocument(std::span<const uint8_t> bytes) {
 }  // namespace
 
 // A first byte that is even gives the rest to the reader as it is. Else the rest is cut into chunks (tag
-// number, length in two bytes, content) under checksums that are right: no mutation would find those.
+// number, length in two bytes, content) under checksums that are right: no mutation would find those. They
+// are of version 1, or of the newest where the byte's second bit is set.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (size == 0) return 0;
     const std::span<const uint8_t> rest(data + 1, size - 1);
@@ -47,6 +48,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
                           rest.subspan(at + 3, length)});
         at += 3 + length;
     }
-    tryDocument(packChunks(kFormatVersion, chunks));
+    tryDocument(packChunks((data[0] & 2) != 0 ? kFormatVersion : 1, chunks));
     return 0;
 }

@@ -1,9 +1,12 @@
 // Documents for codec tests: random meshes with everything set that a document can hold.
 #pragma once
 
+#include <algorithm>
+#include <numeric>
 #include <random>
 
 #include "core/document/document.h"
+#include "core/mesh/newton_basis.h"
 #include "tests/support/test_meshes.h"
 
 namespace tessera::testing {
@@ -101,10 +104,43 @@ inline PatchMesh richMesh(unsigned seed, int channels, int collapses, int column
     return mesh;
 }
 
-inline Document richDocument(unsigned seed, int channels = 3, int collapses = 0) {
+// The same mesh with splines on sites in the opponent basis, and among them some of the others: rough ones
+// and smooth ones, each channel of as many terms as chance will have, in the order that chance gives them;
+// values that factors cannot hold; lists that do not begin with the corners; alphas that break the side
+// conditions.
+inline PatchMesh siteMesh(unsigned seed, int channels, int collapses = 0, int columns = 9, int rows = 7) {
+    std::mt19937 random(seed);
+    PatchMesh mesh = richMesh(seed, channels, collapses, columns, rows);
+    mesh.setColourBasis(ColourBasis::Opponent);
+    std::uniform_real_distribution<double> unit(0, 1);
+    mesh.forEachPatch([&](PatchId p) {
+        const unsigned kind = unsigned(random() % 16);
+        if (kind == 0) return;
+        std::vector<uint8_t> sites(kCentreSites);
+        std::iota(sites.begin(), sites.end(), uint8_t{0});
+        std::shuffle(sites.begin() + 3, sites.end(), random);
+        sites.resize(kind == 1 ? size_t(kCentreSites) : kind == 2 ? 3 : 3 + random() % 30);
+        const double size = kind == 3 ? 1e9 : kind == 4 ? 1e-4 : .1;
+        std::array<std::vector<double>, kMaxChannels> factors;
+        std::array<std::span<const double>, kMaxChannels> spans;
+        for (size_t c = 0; c < size_t(channels); ++c) {
+            factors[c].resize(c == 0 ? sites.size() : 3 + random() % (sites.size() - 2));
+            for (size_t k = 0; k < factors[c].size(); ++k)
+                factors[c][k] = k < 3 ? unit(random) : size * (unit(random) - .5);
+            spans[c] = factors[c];
+        }
+        PatchSpline spline = NewtonBasis(sites).spline({spans.data(), size_t(channels)});
+        if (kind == 5) std::rotate(spline.sites.begin(), spline.sites.begin() + 1, spline.sites.end());
+        if (kind == 6) spline.coefficients.back() += 1;
+        mesh.setSpline(p, spline);
+    });
+    return mesh;
+}
+
+inline Document richDocument(unsigned seed, int channels = 3, int collapses = 0, bool sites = false) {
     std::mt19937 random(seed);
     Document d;
-    d.mesh = richMesh(seed, channels, collapses);
+    d.mesh = sites ? siteMesh(seed, channels, collapses) : richMesh(seed, channels, collapses);
     d.settings.patches = 126;
     d.settings.stageVariants["curves"] = "straight";
     d.report.stages = {{"features", "canny", 1.0 / 3, {{"chains", 12}, {"edge pixels", 3456}}},

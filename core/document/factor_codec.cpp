@@ -1,0 +1,494 @@
+// See factor_codec.h; the stream is specified in FORMAT.md.
+#include "core/document/factor_codec.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "core/base/parallel.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr size_t kCorners = 3;
+constexpr size_t kBlock = 256;  // patches whose bases are held at once
+constexpr size_t kGrain = 8;
+constexpr size_t kFactorsPerByte = 16;
+constexpr double kRate = .16;         // of running means of what was off
+constexpr double kCornerSpread = .3;  // what spread() would be of corners
+constexpr int64_t kMaxFactor = int64_t{1} << 30;
+
+// An integer that is mostly small: zero, sign, ones up to kUnary, then an exponential Golomb code.
+struct FactorModel {
+    static constexpr size_t kUnary = 14, kLongest = 31;
+
+    BitModel zero, negative;
+    std::array<BitModel, kUnary> more;
+    std::array<BitModel, kLongest> longer;
+};
+
+template <class Coder>
+void codeFactor(Coder& coder, FactorModel& model, int64_t& value) {
+    bool zero = value == 0;
+    coder.bit(model.zero, zero);
+    if (zero) {
+        value = 0;
+        return;
+    }
+    bool negative = value < 0;
+    coder.bit(model.negative, negative);
+    const uint64_t magnitude = Coder::kEncodes ? uint64_t(std::abs(value)) : 0;
+    size_t ones = 1;
+    for (; ones <= FactorModel::kUnary; ++ones) {
+        bool more = magnitude > ones;
+        coder.bit(model.more[ones - 1], more);
+        if (!more) break;
+    }
+    uint64_t decoded = ones;
+    if (ones > FactorModel::kUnary) {
+        uint64_t rest = magnitude - ones + 1;  // at least 1
+        size_t length = Coder::kEncodes ? size_t(std::bit_width(rest)) : 1;
+        for (size_t i = 1; i < FactorModel::kLongest; ++i) {
+            bool more = length > i;
+            coder.bit(model.longer[i], more);
+            if (!more) break;
+            if (!Coder::kEncodes) length = i + 1;
+        }
+        uint64_t low = rest & ((uint64_t{1} << (length - 1)) - 1);
+        coder.plainBits(low, int(length - 1));
+        decoded = ones + ((uint64_t{1} << (length - 1)) | low) - 1;
+    }
+    if (!Coder::kEncodes) value = negative ? -int64_t(decoded) : int64_t(decoded);
+}
+
+// How a factor was foreseen.
+enum Way : size_t { Across, Alone, Detail, kWays };
+
+constexpr size_t kLevels = 20;
+// Two levels to a doubling, level 0 below 1/16.
+size_t levelOf(double expected) {
+    double bound = .0625;
+    size_t level = 0;
+    for (; level + 1 < kLevels && expected >= bound; ++level) bound *= 1.41421356237309504880;
+    return level;
+}
+
+constexpr size_t kShares = 17;  // 16ths
+
+struct Models {
+    BitModel exact;
+    // Seven bits from the highest, by those before; by what is around, or by the channel before.
+    std::array<std::array<std::array<BitModel, 128>, 4>, kMaxChannels> counts;
+    // By the share of places that are still to be taken, the place's ring, and the places around it.
+    std::array<std::array<std::array<std::array<BitModel, 3>, 4>, 3>, kShares> taken;
+    std::array<std::array<BitModel, kMaxChannels>, kShares> group;
+    std::array<std::array<std::array<std::array<FactorModel, 3>, kLevels>, kWays>, kMaxChannels> factors;
+    IntModel size;
+};
+
+// What later neighbours ask of a patch.
+struct Shown {
+    bool known = false;  // not exact
+    std::array<std::array<float, kBorderSites>, kMaxChannels> border{};
+    std::array<double, kMaxChannels> detail{}, seam{};  // activities at the end
+};
+
+template <class Coder>
+class FactorCoder {
+  public:
+    FactorCoder(Coder& coder, const FactorStream& stream, std::vector<FactorColour>& colours)
+        : mCoder(coder),
+          mStream(stream),
+          mMesh(stream.mesh),
+          mColours(colours),
+          mShown(colours.size()),
+          mBorderTaken(colours.size(), 0) {}
+
+    std::string codeLayouts(size_t streamBytes) {
+        size_t factors = 0;
+        for (uint32_t f = 0; f < mColours.size(); ++f) {
+            FactorColour& colour = mColours[f];
+            mCoder.bit(mModels->exact, colour.exact);
+            std::string wrong = colour.exact ? codeExact(colour) : codeCounts(f);
+            if (wrong.empty() && !colour.exact) wrong = codeSites(f);
+            if (!wrong.empty()) return wrong;
+            if constexpr (!Coder::kEncodes) {
+                if (mCoder.overrun()) return "ends before its colours do";
+                for (const uint8_t count : colour.counts) factors += count;
+                if (factors / kFactorsPerByte > streamBytes)
+                    return "has more factors than its bytes can hold";
+            }
+        }
+        return {};
+    }
+
+    // Factors of [begin, end), for which prepare() has been called.
+    std::string codePatch(uint32_t f, const std::optional<FactorBasis>& basis) {
+        if (!basis) return {};
+        for (size_t c = 0; c < channels(); ++c)
+            if (auto wrong = codeChannel(f, c, *basis); !wrong.empty()) return wrong;
+        mShown[f].known = true;
+        return {};
+    }
+
+    std::optional<FactorBasis> prepare(uint32_t f) {
+        FactorColour& colour = mColours[f];
+        if (colour.exact) return {};
+        FactorBasis basis(colour, mStream.channels, mStream.step, mStream.areas[f]);
+        for (size_t c = 0; c < channels(); ++c) colour.factors[c].resize(colour.counts[c]);
+        return basis;
+    }
+
+  private:
+    size_t channels() const { return size_t(mStream.channels); }
+
+    template <class Visit>
+    void forEachEarlier(uint32_t f, Visit&& visit) const {
+        for (uint32_t s = 0; s < 3; ++s) {
+            const uint32_t g = mMesh.neighbour[f][s];
+            if (g != FileMesh::kNone && g < f && !mColours[g].exact) visit(s, g);
+        }
+    }
+
+    std::string codeCounts(uint32_t f) {
+        FactorColour& colour = mColours[f];
+        size_t sum = 0, neighbours = 0;
+        forEachEarlier(f, [&](uint32_t, uint32_t g) {
+            sum += mColours[g].counts[0];
+            ++neighbours;
+        });
+        // 3 where nothing is known, else 0 for few, 1 for some, 2 for many.
+        const auto level = [](size_t count, size_t some, size_t many) -> size_t {
+            return count < some ? 0 : count < many ? 1 : 2;
+        };
+        size_t context = neighbours == 0 ? 3 : level(sum / neighbours, 20, 34);
+        for (size_t c = 0; c < channels(); ++c) {
+            size_t node = 1;
+            for (size_t bit = 64; bit > 0; bit /= 2) {
+                bool set = (colour.counts[c] & bit) != 0;
+                mCoder.bit(mModels->counts[c][context][node], set);
+                node = 2 * node + size_t(set);
+            }
+            const size_t count = node - 128;
+            if (count < kCorners || count > kCentreSites) return "has a number of factors that cannot be";
+            colour.counts[c] = uint8_t(count);
+            context = c == 0 ? level(count, 20, 34) : level(count, 4, 12);
+        }
+        return {};
+    }
+
+    // 0: not in the list; else the part of the list that it is in, by the different counts in order.
+    using Groups = std::array<uint8_t, kCentreSites>;
+
+    static std::vector<size_t> groupSizes(const std::array<uint8_t, kMaxChannels>& counts) {
+        std::vector<uint8_t> ends(counts.begin(), counts.end());
+        std::sort(ends.begin(), ends.end());
+        std::vector<size_t> sizes;
+        size_t last = kCorners;
+        for (const uint8_t end : ends)
+            if (end > last) {
+                sizes.push_back(end - last);
+                last = end;
+            }
+        return sizes;
+    }
+
+    static size_t shareOf(size_t part, size_t whole) { return part * (kShares - 1) / whole; }
+
+    std::string codeSites(uint32_t f) {
+        FactorColour& colour = mColours[f];
+        std::vector<size_t> left = groupSizes(colour.counts);
+        Groups groups{};
+        if constexpr (Coder::kEncodes) {
+            size_t at = kCorners;
+            for (size_t g = 0; g < left.size(); ++g)
+                for (size_t i = 0; i < left[g]; ++i) groups[colour.sites[at++]] = uint8_t(g + 1);
+        }
+        const std::array<uint8_t, kCentreSites> beyond = sitesBeyond(f);
+        size_t total = 0;
+        for (const size_t n : left) total += n;
+        for (size_t s = kCorners; s < kCentreSites && total > 0; ++s) {
+            const size_t places = kCentreSites - s;
+            bool taken = groups[s] != 0;
+            if (total < places)
+                mCoder.bit(mModels->taken[shareOf(total, places)][ringOf(s)][around(groups, s)][beyond[s]],
+                           taken);
+            else
+                taken = true;
+            if (!taken) continue;
+            groups[s] = uint8_t(codeGroup(groups[s], left, total) + 1);
+            --left[groups[s] - 1u];
+            --total;
+        }
+        if constexpr (!Coder::kEncodes) {
+            colour.sites = {0, 1, 2};
+            for (size_t g = 0; g < left.size(); ++g)
+                for (size_t s = kCorners; s < kCentreSites; ++s)
+                    if (groups[s] == g + 1) colour.sites.push_back(uint8_t(s));
+        }
+        markBorder(f, groups);
+        return {};
+    }
+
+    size_t codeGroup(size_t group, const std::vector<size_t>& left, size_t total) {
+        for (size_t g = 0; g + 1 < left.size(); ++g) {
+            if (left[g] == 0) continue;
+            if (left[g] == total) return g;
+            bool here = group == g + 1;
+            mCoder.bit(mModels->group[shareOf(left[g], total)][g], here);
+            if (here) return g;
+            total -= left[g];
+        }
+        return left.size() - 1;
+    }
+
+    static size_t ringOf(size_t site) {
+        const SitePlace p = sitePlaces()[site];
+        const int ring = std::min({p.b, p.c, kSiteSubdivisions - p.b - p.c});
+        return size_t(std::min(ring, 2));
+    }
+
+    // How many of the places beside it, of those before it, are taken.
+    static size_t around(const Groups& groups, size_t site) {
+        size_t count = 0;
+        for (const uint8_t before : earlierPlaces()[site]) count += before != site && groups[before] != 0;
+        return count;
+    }
+
+    // Beside each site, of those before it; the site itself where there is none.
+    static const std::array<std::array<uint8_t, 3>, kCentreSites>& earlierPlaces() {
+        static const auto kPlaces = [] {
+            std::array<std::array<uint8_t, 3>, kCentreSites> all{};
+            constexpr std::array<SitePlace, 3> kSteps{{{-1, 0}, {0, -1}, {1, -1}}};
+            for (size_t s = 0; s < kCentreSites; ++s) {
+                all[s].fill(uint8_t(s));
+                for (size_t t = kCorners; t < s; ++t)
+                    for (size_t i = 0; i < kSteps.size(); ++i)
+                        if (sitePlaces()[t].b - sitePlaces()[s].b == kSteps[i].b &&
+                            sitePlaces()[t].c - sitePlaces()[s].c == kSteps[i].c)
+                            all[s][i] = uint8_t(t);
+            }
+            return all;
+        }();
+        return kPlaces;
+    }
+
+    // For the sites on the border: 1 or 2 where an earlier patch lies there, 2 if it has a site there too.
+    std::array<uint8_t, kCentreSites> sitesBeyond(uint32_t f) const {
+        std::array<uint8_t, kCentreSites> beyond{};
+        forEachEarlier(f, [&](uint32_t s, uint32_t g) {
+            const size_t theirs = mMesh.neighbourSide[f][s];
+            for (size_t i = 1; i < kSiteSubdivisions; ++i) {
+                const size_t there = (theirs + 1) * kSiteSubdivisions - i;
+                beyond[borderSites()[s * kSiteSubdivisions + i]] = uint8_t(borderTaken(g, there) ? 2 : 1);
+            }
+        });
+        return beyond;
+    }
+
+    bool borderTaken(uint32_t g, size_t place) const { return (mBorderTaken[g] >> place & 1) != 0; }
+    void markBorder(uint32_t f, const Groups& groups) {
+        for (size_t i = 0; i < kBorderSites; ++i)
+            if (groups[borderSites()[i]] != 0) mBorderTaken[f] |= uint32_t{1} << i;
+    }
+
+    void codeFloat(float& value) {
+        uint64_t bits = std::bit_cast<uint32_t>(value);
+        mCoder.plainBits(bits, 32);
+        value = std::bit_cast<float>(uint32_t(bits));
+    }
+
+    bool codeSize(size_t& size, size_t most) {
+        auto value = int64_t(size);
+        mCoder.number(mModels->size, value);
+        if (value < 0 || value > int64_t(most)) return false;
+        size = size_t(value);
+        return true;
+    }
+
+    // Everything of a PatchSpline; what it means is checked by splineViolation.
+    std::string codeExact(FactorColour& colour) {
+        PatchSpline& spline = colour.spline;
+        size_t coefficients = 0, sites = spline.sites.size(), centres = spline.centres.size();
+        for (size_t c = 0; c < channels(); ++c) {
+            size_t terms = spline.terms[c];
+            if (!codeSize(terms, 255)) return "has a number of terms that cannot be";
+            spline.terms[c] = uint8_t(terms);
+            coefficients += 3 + terms;
+        }
+        if (!codeSize(sites, kCentreSites) || !codeSize(centres, 255))
+            return "has a number of centres that cannot be";
+        spline.sites.resize(sites);
+        spline.centres.resize(centres);
+        spline.coefficients.resize(coefficients);
+        for (uint8_t& s : spline.sites) {
+            uint64_t bits = s;
+            mCoder.plainBits(bits, 8);
+            s = uint8_t(bits);
+        }
+        for (glm::vec2& p : spline.centres) {
+            codeFloat(p.x);
+            codeFloat(p.y);
+        }
+        for (float& k : spline.coefficients) codeFloat(k);
+        return {};
+    }
+
+    // What the earlier neighbours tell of channel c of a patch: colours on its border by site, where no
+    // feature lies between; a colour; activities.
+    struct Told {
+        std::array<double, kCentreSites> value{};
+        std::array<uint8_t, kCentreSites> count{};
+        double any = 0, detail = 0, seam = 0;
+    };
+
+    Told tell(uint32_t f, size_t c) const {
+        Told told;
+        double neighbours = 0;
+        forEachEarlier(f, [&](uint32_t s, uint32_t g) {
+            const Shown& shown = mShown[g];
+            const size_t theirs = mMesh.neighbourSide[f][s];
+            const bool feature = mStream.featureEdges[mMesh.sideEdge[f][s]];
+            for (size_t i = 0; i <= kSiteSubdivisions; ++i) {
+                const double value =
+                    double(shown.border[c][((theirs + 1) * kSiteSubdivisions - i) % kBorderSites]);
+                if (i == 0) told.any += value;
+                if (feature) continue;
+                const uint8_t site = borderSites()[(s * kSiteSubdivisions + i) % kBorderSites];
+                told.value[site] += value;
+                ++told.count[site];
+            }
+            told.detail += shown.detail[c];
+            told.seam += shown.seam[c];
+            ++neighbours;
+        });
+        for (size_t s = 0; s < kCentreSites; ++s)
+            if (told.count[s] > 1) told.value[s] /= told.count[s];
+        if (neighbours == 0) return {{}, {}, 0, mLast[c].detail, mLast[c].seam};
+        told.any /= neighbours;
+        told.detail /= neighbours;
+        told.seam /= neighbours;
+        return told;
+    }
+
+    std::string codeChannel(uint32_t f, size_t c, const FactorBasis& factorBasis) {
+        const SiteBasis& basis = factorBasis.basis();
+        std::vector<int32_t>& factors = mColours[f].factors[c];
+        const Told told = tell(f, c);
+        double detail = told.detail, seam = told.seam;
+        std::array<double, kCentreSites> sum{};  // the spline of the factors so far
+        double corners = 0;
+        for (size_t k = 0; k < factors.size(); ++k) {
+            const size_t site = basis.sites()[k];
+            const double step = factorBasis.step(int(c), int(k));
+            const bool across = told.count[site] != 0;
+            const Way way = across ? Across : k < kCorners ? Alone : Detail;
+            const double foreseen = across         ? told.value[site] - sum[site]
+                                    : k < kCorners ? (k == 0 ? told.any : corners / double(k))
+                                                   : 0;
+            const double spread = basis.spread(int(k));
+            const double scale = way == Across  ? seam
+                                 : way == Alone ? detail * kCornerSpread
+                                                : detail * spread;
+            const int64_t expected = nearest(foreseen / step);
+            int64_t off = factors[k] - expected;
+            const size_t luma = c == 0 ? 0 : lumaLevel(f, k);
+            codeFactor(mCoder, mModels->factors[c][way][levelOf(scale / step)][luma], off);
+            if (!Coder::kEncodes) {
+                const int64_t factor = expected + off;
+                if (std::abs(factor) > kMaxFactor) return "has a factor out of range";
+                factors[k] = int32_t(factor);
+            }
+            const double value = factors[k] * step;
+            if (k < kCorners) corners += value;
+            const auto function = basis.function(int(k));
+            for (size_t s = 0; s < kCentreSites; ++s) sum[s] += value * function[s];
+            const double miss = std::max(std::abs(value - foreseen), .25 * step);
+            if (way == Across) seam += (miss - seam) * kRate;
+            if (way == Detail) detail += (miss / spread - detail) * kRate;
+        }
+        Shown& shown = mShown[f];
+        for (size_t i = 0; i < kBorderSites; ++i) shown.border[c][i] = float(sum[borderSites()[i]]);
+        shown.detail[c] = detail;
+        shown.seam[c] = seam;
+        mLast[c] = {detail, seam};
+        return {};
+    }
+
+    static int64_t nearest(double x) { return int64_t(std::floor(std::clamp(x, -1e9, 1e9) + .5)); }
+
+    // Where brightness has detail, so have the other channels.
+    size_t lumaLevel(uint32_t f, size_t k) const {
+        const auto& luma = mColours[f].factors[0];
+        if (k >= luma.size()) return 0;
+        const int32_t size = std::abs(luma[k]);
+        return size == 0 ? 0 : size < 3 ? 1 : 2;
+    }
+
+    Coder& mCoder;
+    const FactorStream& mStream;
+    const FileMesh& mMesh;
+    std::vector<FactorColour>& mColours;
+    std::vector<Shown> mShown;
+    std::vector<uint32_t> mBorderTaken;
+    std::unique_ptr<Models> mModels = std::make_unique<Models>();
+    struct Activities {
+        double detail = 0, seam = 0;
+    };
+    std::array<Activities, kMaxChannels> mLast{};
+};
+
+// Block after block: what takes time apart from the stream is done for many patches at once.
+template <class Coder, class Finish>
+std::string codeAll(FactorCoder<Coder>& coder, size_t patches, Finish&& finish) {
+    std::vector<std::optional<FactorBasis>> prepared(std::min(kBlock, patches));
+    for (size_t first = 0; first < patches; first += kBlock) {
+        const size_t count = std::min(kBlock, patches - first);
+        const auto each = [&](auto&& visit) {
+            parallelFor(count, kGrain, [&](size_t begin, size_t end) {
+                for (size_t i = begin; i < end; ++i) visit(uint32_t(first + i), prepared[i]);
+            });
+        };
+        each([&](uint32_t f, std::optional<FactorBasis>& basis) { basis = coder.prepare(f); });
+        for (size_t i = 0; i < count; ++i)
+            if (auto wrong = coder.codePatch(uint32_t(first + i), prepared[i]); !wrong.empty()) return wrong;
+        each(finish);
+    }
+    return {};
+}
+
+}  // namespace
+
+std::string encodeFactors(RangeEncoder& coder, const FactorStream& stream,
+                          std::vector<FactorColour>& colours) {
+    FactorCoder factorCoder(coder, stream, colours);
+    if (auto wrong = factorCoder.codeLayouts(0); !wrong.empty()) return wrong;
+    return codeAll(factorCoder, colours.size(), [](uint32_t, const std::optional<FactorBasis>&) {});
+}
+
+std::string decodeFactors(RangeDecoder& coder, const FactorStream& stream, size_t streamBytes,
+                          std::vector<PatchSpline>& splines) {
+    std::vector<FactorColour> colours(stream.mesh.triangles.size());
+    splines.resize(colours.size());
+    FactorCoder factorCoder(coder, stream, colours);
+    std::string wrong = factorCoder.codeLayouts(streamBytes);
+    if (wrong.empty())
+        wrong =
+            codeAll(factorCoder, colours.size(), [&](uint32_t f, const std::optional<FactorBasis>& basis) {
+                splines[f] = basis ? basis->spline(colours[f].factors) : std::move(colours[f].spline);
+                colours[f].factors = {};
+            });
+    return coder.overrun() ? "ends before its colours do" : wrong;
+}
+
+size_t leastFactorBytes(const std::vector<FactorColour>& colours, int channels) {
+    size_t factors = 0;
+    for (const FactorColour& colour : colours)
+        for (int c = 0; c < channels; ++c) factors += colour.counts[size_t(c)];
+    return factors / kFactorsPerByte + 1;
+}
+
+}  // namespace tessera

@@ -1,0 +1,124 @@
+// The codec's basis of a patch's sites against the one that the fit uses, and against sums over the domain.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "core/document/site_basis.h"
+#include "core/mesh/newton_basis.h"
+
+namespace tessera {
+namespace {
+
+std::vector<uint8_t> randomSites(size_t count, std::mt19937& random) {
+    std::vector<uint8_t> sites(kCentreSites);
+    std::iota(sites.begin(), sites.end(), uint8_t{0});
+    std::shuffle(sites.begin() + 3, sites.end(), random);
+    sites.resize(count);
+    return sites;
+}
+
+TEST(SitePlaces, AreTheSites) {
+    for (size_t s = 0; s < kCentreSites; ++s) {
+        const SitePlace p = sitePlaces()[s];
+        const double v = p.b / 10.0, w = p.c / 10.0;
+        const glm::dvec2 d = domainPoint({1 - v - w, v, w}) - centreSites()[s];
+        EXPECT_LT(std::abs(d.x) + std::abs(d.y), 1e-12);
+    }
+}
+
+TEST(BorderSites, RunOnceAroundTheDomain) {
+    const auto& border = borderSites();
+    for (size_t i = 0; i < border.size(); ++i) {
+        const SitePlace p = sitePlaces()[border[i]], q = sitePlaces()[border[(i + 1) % border.size()]];
+        const int side = int(i) / 10;
+        EXPECT_EQ(q.b - p.b, side == 0 ? 1 : side == 1 ? -1 : 0) << i;
+        EXPECT_EQ(q.c - p.c, side == 0 ? 0 : side == 1 ? 1 : -1) << i;
+    }
+    EXPECT_EQ(border[0], 0);
+}
+
+TEST(SiteBasis, IsTheNewtonBasisOfItsOrder) {
+    std::mt19937 random(1);
+    for (const size_t count : {3u, 4u, 12u, 30u, 66u}) {
+        const SiteBasis basis(randomSites(count, random), {});
+        const NewtonBasis newton(basis.sites());
+        std::vector<double> values(count), dx(count), dy(count);
+        for (size_t s = 0; s < kCentreSites; ++s) {
+            newton.evaluateWithDerivatives(centreSites()[s], values.data(), dx.data(), dy.data());
+            for (size_t k = 0; k < count; ++k) EXPECT_NEAR(basis.function(int(k))[s], values[k], 1e-9);
+        }
+    }
+}
+
+TEST(SiteBasis, DoesNotDependOnTheOrderWithinAGroup) {
+    std::mt19937 random(2);
+    auto sites = randomSites(25, random);
+    const std::vector<uint8_t> counts{25, 9, 3};
+    const SiteBasis basis(sites, counts);
+    const auto sorted = [](std::span<const uint8_t> part) {
+        std::vector<uint8_t> all(part.begin(), part.end());
+        std::sort(all.begin(), all.end());
+        return all;
+    };
+    EXPECT_EQ(sorted(basis.sites().first(9)), sorted(std::span(sites).first(9)));
+    for (int i = 0; i < 20; ++i) {
+        std::shuffle(sites.begin() + 3, sites.begin() + 9, random);
+        std::shuffle(sites.begin() + 9, sites.end(), random);
+        EXPECT_TRUE(std::ranges::equal(SiteBasis(sites, counts).sites(), basis.sites()));
+    }
+    std::swap(sites[5], sites[15]);
+    EXPECT_FALSE(std::ranges::equal(SiteBasis(sites, counts).sites(), basis.sites()));
+}
+
+TEST(SiteBasis, FactorsAndSplinesAreEachOthersInverse) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (const size_t count : {3u, 5u, 20u, 66u}) {
+        const SiteBasis basis(randomSites(count, random), {});
+        std::vector<double> values;
+        for (size_t i = 0; i < count; ++i) values.push_back(unit(random));
+        const std::array factors{basis.factors(values)};
+        const PatchSpline spline = basis.spline(factors);
+        const auto back = basis.values(spline, 0, int(count));
+        for (size_t i = 0; i < count; ++i) {
+            EXPECT_NEAR(back[i], values[i], 1e-4);
+            EXPECT_NEAR(evaluateSpline(spline, 0, centreSites()[basis.sites()[i]]), values[i], 1e-4);
+        }
+        const std::span<const double> span(factors[0]);
+        const PatchSpline newton = NewtonBasis(basis.sites()).spline({&span, 1});
+        EXPECT_NEAR(evaluateSpline(spline, 0, {.4, .3}), evaluateSpline(newton, 0, {.4, .3}), 1e-4);
+    }
+}
+
+TEST(SiteBasis, NormsGiveTheMeanSquareOfASpline) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const SiteBasis basis(randomSites(18, random), {});
+    for (const int n : {3, 7, 18}) {
+        std::array<std::vector<double>, 1> errors;
+        for (int k = 0; k < n; ++k) errors[0].push_back(unit(random));
+        const SiteBasis::Norms norms = basis.norms(n);
+        double foretold = 0;
+        for (int k = 0; k < n; ++k) {
+            double sum = 0;
+            for (int j = 0; j <= k; ++j) sum += norms.at(k, j) * errors[0][size_t(j)];
+            foretold += sum * sum;
+        }
+        const PatchSpline spline = basis.spline(errors);
+        double measured = 0, count = 0;
+        constexpr int kGrid = 150;
+        for (int i = 0; i < kGrid; ++i)
+            for (int j = 0; i + j < kGrid; ++j) {
+                const double v = (i + 1.0 / 3) / kGrid, w = (j + 1.0 / 3) / kGrid;
+                const double value = evaluateSpline(spline, 0, domainPoint({1 - v - w, v, w}));
+                measured += value * value;
+                ++count;
+            }
+        EXPECT_NEAR(foretold / (measured / count), 1, .1) << n;
+    }
+}
+
+}  // namespace
+}  // namespace tessera
