@@ -57,11 +57,12 @@ Result<ImageDifference> differenceOf(const PatchMesh& mesh, const Image& picture
 
 // "bytes", and the error of what a reader of the file gets, whose drop is the codec's loss.
 Result<void> addCodec(Json& row, const VectorImage& vectorized, const VectorizeSettings& settings,
-                      const Image& picture, double psnr) {
+                      const Image& picture, const ImageDifference& errors) {
     Document document;
     document.mesh = vectorized.mesh;
     document.settings = settings;
     document.report = vectorized.report;
+    document.difference = errors;
     const auto bytes = encodeDocument(document);
     if (!bytes) return tl::unexpected(bytes.error());
     const auto decoded = decodeDocument(*bytes);
@@ -70,7 +71,7 @@ Result<void> addCodec(Json& row, const VectorImage& vectorized, const VectorizeS
     if (!difference) return tl::unexpected(difference.error());
     row["bytes"] = bytes->size();
     row["psnr_decoded"] = difference->psnr;
-    row["codec_loss_db"] = psnr - difference->psnr;
+    row["codec_loss_db"] = errors.psnr - difference->psnr;
     return {};
 }
 
@@ -111,7 +112,7 @@ Result<Json> measureRun(const std::string& path, const VectorizeSettings& settin
     addShape(row, mesh);
     row["folds"] = validate(mesh).violationCount;
     row.update(measureFeatures(*picture, rendering, mesh));
-    if (const auto added = addCodec(row, *vectorized, settings, *picture, difference->psnr); !added)
+    if (const auto added = addCodec(row, *vectorized, settings, *picture, *difference); !added)
         return tl::unexpected(added.error());
     row.update(cost);
     row["stages"] = toJson(vectorized->report);

@@ -37,13 +37,16 @@ Result<Document> asStored(Document document) {
         [](const std::vector<uint8_t>& bytes) { return decodeDocument(bytes); });
 }
 
-Result<void> addErrorsAndPreview(Document& document, const Image& image, Progress& progress) {
+Result<void> addErrors(Document& document, const Image& image, Progress& progress) {
     auto rendering = rasterize(document.mesh, wholePicture(document.mesh, {1, 1}), {.samples = 4}, &progress);
     if (!rendering) return tl::unexpected(rendering.error());
     auto difference = compareImages(image, *rendering);
     if (!difference) return tl::unexpected(difference.error());
     document.difference = *difference;
+    return {};
+}
 
+Result<void> addPreview(Document& document, Progress& progress) {
     const double side = std::max(document.mesh.width(), document.mesh.height());
     const double scale = std::min(1.0, kPreviewSidePx / side);
     auto preview =
@@ -75,10 +78,14 @@ Result<Outcome> vectorizeFile(const Arguments& arguments, const VectorizeSetting
     document.settings = settings;
     document.report = std::move(vectorized->report);
     document.source = std::move(picture->source);
+    // Colours are rounded as finely as their errors deserve; then the errors are those of the rounded ones.
+    if (auto added = addErrors(document, picture->image, progress); !added)
+        return tl::unexpected(added.error());
     auto stored = asStored(std::move(document));
     if (!stored) return tl::unexpected(stored.error());
-    if (auto added = addErrorsAndPreview(*stored, picture->image, progress); !added)
+    if (auto added = addErrors(*stored, picture->image, progress); !added)
         return tl::unexpected(added.error());
+    if (auto added = addPreview(*stored, progress); !added) return tl::unexpected(added.error());
     if (arguments.embed)
         stored->embeddedSource = std::make_shared<const std::vector<uint8_t>>(std::move(*file));
     auto bytes = encodeDocument(*stored);

@@ -44,7 +44,7 @@ struct VectorizeSettings {
 
     // The default method.
     double featureBudget = .2;  // feature edges for each patch wanted, at most
-    int refineRounds = 5;       // of the true-error stage
+    int refineRounds = 4;       // of the true-error stage
     double termsPerPatch = 48;  // of the colour splines, over all channels, on the average
     // Along edges that are no features the colours of both sides differ by so many levels (of 255) on the
     // mean, and by so many at the 95th percentile, at most.

@@ -23,7 +23,7 @@ constexpr int kSamplesPerSide = 2;
 // The weight of seams is found in so many solutions, each from the one before.
 constexpr int kSeamPasses = 4;
 // Of the residual of the patches by themselves: to find the weight, and in the end.
-constexpr double kFirstTolerance = 3e-3, kTolerance = 1e-3;
+constexpr double kFirstTolerance = 1.5e-3, kTolerance = 1e-3;
 constexpr double kLeastSeamWeight = .05, kMostSeamWeight = 50;
 
 // By patch id; empty where there is no patch.
@@ -198,8 +198,8 @@ double seamExcess(const ColorEquations& equations, const std::vector<SiteChoice>
                     double(levels[i].first) / settings.seamHighLevels);
 }
 
-// Finds the weight at which the excess is 1, by secants: seams go with a power of their weight, about the cube
-// root at first.
+// Finds the weight at which the excess is 1, by secants: seams go with a power of their weight, about the
+// cube root at first.
 class SeamWeightSearch {
   public:
     double next(double weight, double excess) {
@@ -244,8 +244,8 @@ Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& s
             if (!progress.step(.6 + .4 * (pass * mesh.channels() + c + 1) / (kSeamPasses * mesh.channels())))
                 return stopped();
         }
-        seamWeight = search.next(
-            seamWeight, seamExcess(equations, choices, factors, mesh.channels(), weights, settings));
+        seamWeight = search.next(seamWeight,
+                                 seamExcess(equations, choices, factors, mesh.channels(), weights, settings));
         weights.tail(weights.size() - equations.pixelRows).setConstant(float(seamWeight));
     }
     report.figures.push_back({"seam weight", seamWeight});

@@ -114,7 +114,7 @@ Image inOpponentBasis(Image image) {
 }
 
 // The initial mesh has this many times the faces wanted.
-constexpr double kInitialSurplus = 3;
+constexpr double kInitialSurplus = 2;
 
 // As many features as the mesh is to be cut along.
 Result<FeatureNetwork> findNetwork(const Image& image, const VectorizeSettings& settings,
