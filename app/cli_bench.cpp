@@ -209,6 +209,8 @@ void printRuns(const std::vector<Json>& runs) {
     printFigures("Features",
                  columns({{"reference px", "reference_px", 0},
                           {"recall %", "recall", 1, 100},
+                          {"detail px", "detail_px", 0},
+                          {"detail recall %", "detail_recall", 1, 100},
                           {"cut px", "cut_px", 0},
                           {"feature edges %", "feature_share", 1, 100},
                           {"error at edges", "edge_error_ratio"}}),

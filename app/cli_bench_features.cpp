@@ -80,33 +80,49 @@ double edgeErrorRatio(const Image& picture, const Image& rendering, const std::v
     return near / nearCount / (all / double(around.size()));
 }
 
+struct Recall {
+    double referencePx = 0;
+    double share = std::numeric_limits<double>::quiet_NaN();
+};
+
+Recall recallOf(const Image& picture, const std::vector<EdgeChain>& chains,
+                const std::vector<BezierCurve>& features) {
+    const std::vector<double> length = lengthByPixel(picture, chains);
+    std::vector<uint8_t> near(picture.planeSize());
+    for (const BezierCurve& curve : features) markNear(picture, curve, length, near);
+    Recall recall;
+    double found = 0;
+    for (size_t i = 0; i < length.size(); ++i) {
+        recall.referencePx += length[i];
+        if (near[i] != 0) found += length[i];
+    }
+    if (recall.referencePx > 0) recall.share = found / recall.referencePx;
+    return recall;
+}
+
 }  // namespace
 
 Json measureFeatures(const Image& picture, const Image& rendering, const PatchMesh& mesh) {
-    const std::vector<EdgeChain> chains =
-        referenceEdges(picture, kReferenceLow, kReferenceHigh, kReferenceMinPixels);
-    const std::vector<double> length = lengthByPixel(picture, chains);
-    std::vector<uint8_t> near(picture.planeSize());
+    std::vector<BezierCurve> features;
     double cut = 0;
-    size_t features = 0;
     mesh.forEachEdge([&](EdgeId e) {
         if (!mesh.curve(e).feature) return;
-        const BezierCurve curve = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e)));
-        ++features;
-        cut += curve.length();
-        markNear(picture, curve, length, near);
+        features.push_back(toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e))));
+        cut += features.back().length();
     });
-    double total = 0, found = 0;
-    for (size_t i = 0; i < length.size(); ++i) {
-        total += length[i];
-        if (near[i] != 0) found += length[i];
-    }
+    const auto outlines =
+        referenceEdges(picture, kOutlineSigmaPx, kReferenceLow, kReferenceHigh, kReferenceMinPixels);
+    const auto detail = referenceEdges(picture, 0, kReferenceLow, kReferenceHigh, kReferenceMinPixels);
+    const Recall ofOutlines = recallOf(picture, outlines, features),
+                 ofDetail = recallOf(picture, detail, features);
     Json json;
-    json["reference_px"] = total;
-    json["recall"] = total > 0 ? found / total : std::numeric_limits<double>::quiet_NaN();
+    json["reference_px"] = ofOutlines.referencePx;
+    json["recall"] = ofOutlines.share;
+    json["detail_px"] = ofDetail.referencePx;
+    json["detail_recall"] = ofDetail.share;
     json["cut_px"] = cut;
-    json["feature_share"] = double(features) / double(mesh.connectivity().edgeCount());
-    json["edge_error_ratio"] = edgeErrorRatio(picture, rendering, chains);
+    json["feature_share"] = double(features.size()) / double(mesh.connectivity().edgeCount());
+    json["edge_error_ratio"] = edgeErrorRatio(picture, rendering, outlines);
     return json;
 }
 

@@ -73,9 +73,11 @@ class Linker {
 
 }  // namespace
 
-std::vector<EdgeChain> referenceEdges(const Image& image, double low, double high, int minPixels) {
-    cv::Mat edges;
-    cv::Canny(lumaOf(image), edges, low, high, 3, true);
+std::vector<EdgeChain> referenceEdges(const Image& image, double sigmaPx, double low, double high,
+                                      int minPixels) {
+    cv::Mat luma = lumaOf(image), edges;
+    if (sigmaPx > 0) cv::GaussianBlur(luma, luma, {0, 0}, sigmaPx);
+    cv::Canny(luma, edges, low, high, 3, true);
     Linker linker(edges);
     std::vector<EdgeChain> chains;
     for (int y = 0; y < image.height(); ++y)

@@ -27,7 +27,9 @@ double kernel(glm::dvec2 a, glm::dvec2 b) {
 }  // namespace
 
 NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
-    : mSites(sites.begin(), sites.end()), mCoefficients((sites.size() + kPolynomials) * sites.size(), 0) {
+    : mSites(sites.begin(), sites.end()),
+      mCoefficients((sites.size() + kPolynomials) * sites.size(), 0),
+      mEnergies(sites.size(), 0) {
     const int n = size();
     TESSERA_CHECK(n >= kCorners && mSites[0] == 0 && mSites[1] == 1 && mSites[2] == 2);
     const auto& places = centreSites();
@@ -77,6 +79,7 @@ NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
             for (int j = i; j < k; ++j) sum -= g[at(k, j)] * inverse[at(j, i)];
             inverse[at(k, i)] = sum / g[at(k, k)];
         }
+    for (int k = 0; k < m; ++k) mEnergies[size_t(k + kCorners)] = 1 / (g[at(k, k)] * g[at(k, k)]);
     for (int k = 0; k < m; ++k)
         for (int i = 0; i <= k; ++i) {
             const double factor = inverse[at(k, i)] / g[at(k, k)];

@@ -23,6 +23,10 @@ class NewtonBasis {
 
     int size() const { return int(mSites.size()); }
 
+    // The thin-plate energy of function k, up to a constant: the alphas' quadratic form in phi. The functions
+    // are orthogonal in it, so that a spline's is the sum of energy(k) times its factors squared.
+    double energy(int k) const { return mEnergies[size_t(k)]; }
+
     // The functions at `count` points of the domain: out[k * stride + i] is function k at point i.
     void evaluate(const float* x, const float* y, size_t count, float* out, size_t stride) const;
     // The functions and their derivatives along the domain's axes at one point.
@@ -41,6 +45,7 @@ class NewtonBasis {
     std::vector<uint8_t> mSites;
     std::vector<glm::vec2> mCentres;
     std::vector<double> mCoefficients;
+    std::vector<double> mEnergies;
 };
 
 // What a spline may be made of: the barycentric coordinates, and for each further site the spline with alpha

@@ -13,8 +13,9 @@ namespace {
 
 using Rows = ColorEquations::Rows;
 
-// Against drifting where pixels say little: a squared factor counts this much of a patch's pixels.
-constexpr double kRidge = 1e-5;
+// Where pixels say little colours are smooth: the thin-plate energy over a patch, in px, counts this much of
+// a squared error; and nothing drifts: a squared factor counts this much of a patch's pixels.
+constexpr double kBending = 1e-2, kRidge = 1e-6;
 
 // Parts of rows, as the patches find them: factors of `patch` for row `id`.
 struct Part {
@@ -161,7 +162,9 @@ void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& part
     gram.selfadjointView<Eigen::Lower>().rankUpdate(means);
     gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
     patch.gram = gram.cast<double>();
-    patch.gram.diagonal().array() += kRidge * std::max(1.0, weight);
+    const double area = std::max(1.0, weight);
+    for (int k = 0; k < patch.count; ++k)
+        patch.gram(k, k) += kRidge * area + kBending / area * m.bases[p.index].energy(k);
     patch.moments = (means * targets).cast<double>();
     if (mBlur.inReach(p)) addBlurTerms(p, pixels, shared, parts);
 }

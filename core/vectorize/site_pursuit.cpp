@@ -138,8 +138,7 @@ std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture,
             sampler.sample(i, pixels);
             if (pixels.pixels.empty()) continue;
             const uint32_t p = sampler.patches()[i].index;
-            const int most = std::clamp(int(budget.termsPerPixel * double(pixels.pixels.size())), kCorners,
-                                        budget.maxTerms);
+            const int most = std::clamp(int(pixels.pixels.size()), kCorners, budget.maxTerms);
             Pursuit(pixels, picture, most).run(most, choices[p].sites, errors[p]);
         }
     });

@@ -19,8 +19,7 @@ struct SiteChoice {
 
 struct SiteBudget {
     double termsPerPatch = 48;  // over all channels, on the average
-    int maxTerms = 40;          // of a channel
-    double termsPerPixel = .7;  // a patch has no more than that
+    int maxTerms = 40;          // of a channel, and no more than the patch has pixels
 };
 
 // By patch id. `picture` is in the mesh's basis and has hard steps at features. Empty where progress says

@@ -30,7 +30,7 @@ Image step(double levels, int rows) {
 TEST(ReferenceEdges, FollowACircle) {
     const Image disc =
         paint(80, 80, 3, [](double x, double y, int) { return std::hypot(x - 40, y - 40) < 25 ? .9 : .1; });
-    const auto chains = referenceEdges(disc, 100, 200, 20);
+    const auto chains = referenceEdges(disc, 0, 100, 200, 20);
     ASSERT_FALSE(chains.empty());
     std::set<std::pair<int, int>> seen;
     for (const EdgeChain& chain : chains)
@@ -46,13 +46,16 @@ TEST(ReferenceEdges, FollowACircle) {
 }
 
 TEST(ReferenceEdges, KeepWhatIsAboveTheThresholdsAndLongEnough) {
-    EXPECT_NEAR(total(referenceEdges(step(60, 40), 100, 200, 20)), 39, 2);
-    EXPECT_TRUE(referenceEdges(step(40, 40), 100, 200, 20).empty());  // 4 x 40 is below 200
-    EXPECT_FALSE(referenceEdges(step(40, 40), 100, 150, 20).empty());
-    EXPECT_TRUE(referenceEdges(step(0, 40), 100, 200, 1).empty());
+    EXPECT_NEAR(total(referenceEdges(step(60, 40), 0, 100, 200, 20)), 39, 2);
+    EXPECT_TRUE(referenceEdges(step(40, 40), 0, 100, 200, 20).empty());  // 4 x 40 is below 200
+    EXPECT_FALSE(referenceEdges(step(40, 40), 0, 100, 150, 20).empty());
+    EXPECT_TRUE(referenceEdges(step(0, 40), 0, 100, 200, 1).empty());
     // Eleven rows and the end of the bar.
-    EXPECT_TRUE(referenceEdges(step(60, 11), 100, 200, 60).empty());
-    EXPECT_FALSE(referenceEdges(step(60, 11), 100, 200, 10).empty());
+    // Smoothed, a step of 80 levels has a gradient of about 4 * 80 / (sqrt(2 pi) 1.4) = 91.
+    EXPECT_TRUE(referenceEdges(step(80, 40), 1.4, 80, 100, 20).empty());
+    EXPECT_FALSE(referenceEdges(step(100, 40), 1.4, 80, 100, 20).empty());
+    EXPECT_TRUE(referenceEdges(step(60, 11), 0, 100, 200, 60).empty());
+    EXPECT_FALSE(referenceEdges(step(60, 11), 0, 100, 200, 10).empty());
 }
 
 TEST(ReferenceEdges, MeasureSteps) {
