@@ -43,13 +43,13 @@ struct VectorizeSettings {
     int samplesPerSide = 10;  // n
 
     // The default method.
-    double featureBudget = .2;  // feature edges for each patch wanted, at most
-    int refineRounds = 4;       // of the true-error stage
-    double termsPerPatch = 48;  // of the colour splines, over all channels, on the average
+    double featureBudget = .38;  // feature edges for each patch wanted, at most
+    int refineRounds = 4;        // of the true-error stage
+    double termsPerPatch = 56;   // of the colour splines, over all channels, on the average
     // Along edges that are no features the colours of both sides differ by so many levels (of 255) on the
     // mean, and by so many at the 95th percentile, at most.
-    double seamMeanLevels = 2.9;
-    double seamHighLevels = 8.8;
+    double seamMeanLevels = 3;
+    double seamHighLevels = 9.1;
     double seamGradientWeight = .005;  // of a squared difference a pixel off, against that on the edge
 
     bool operator==(const VectorizeSettings&) const = default;

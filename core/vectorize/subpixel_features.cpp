@@ -183,9 +183,11 @@ void extendToBorder(FeatureChain& chain, int width, int height) {
 
 void setImportance(FeatureChain& chain) {
     chain.importance = 0;
-    const double length = lengthPx(chain), perPoint = length / double(chain.points.size());
-    for (const FeaturePoint& p : chain.points)
-        chain.importance += p.contrast / (1 + double(p.sigma)) * perPoint;
+    const double perPoint = lengthPx(chain) / double(chain.points.size());
+    for (const FeaturePoint& p : chain.points) {
+        const double steepness = double(p.contrast) / (1 + double(p.sigma));
+        chain.importance += steepness * steepness * perPoint;
+    }
 }
 
 // Drops what is too short: spurs first, then what they held apart may be longer.

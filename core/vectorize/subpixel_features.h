@@ -41,7 +41,7 @@ struct FeatureChain {
     bool closed = false;
     std::array<ChainEnd, 2> ends{ChainEnd::Tip, ChainEnd::Tip};
     std::vector<uint32_t> corners;  // points where the direction turns by more than settings.cornerDegrees
-    // The integral of contrast / (1 + sigma) along the chain: what counts is sharp, strong and long.
+    // The integral of (contrast / (1 + sigma))^2 along the chain: what counts is steep and long.
     double importance = 0;
 
     bool operator==(const FeatureChain&) const = default;
