@@ -24,7 +24,7 @@ struct Arguments {
     double scale = 1;
     int width = 0;
     int height = 0;
-    int samples = 1;
+    int samples = 4;
     double sharpen = 1;
     bool reference = false;
     bool quiet = false;

@@ -9,9 +9,9 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/export/patch_inverse.h"
-#include "core/export/scan_conversion.h"
 #include "core/mesh/edge_blur.h"
+#include "core/mesh/patch_inverse.h"
+#include "core/mesh/scan_conversion.h"
 
 namespace tessera {
 
@@ -164,14 +164,6 @@ void average(const Image& fine, int n, Image& image, int x0, int y0) {
 }
 
 }  // namespace
-
-View wholePicture(const PatchMesh& mesh, glm::dvec2 scale) {
-    View view;
-    view.scale = scale;
-    view.width = std::max(1, int(std::lround(mesh.width() * scale.x)));
-    view.height = std::max(1, int(std::lround(mesh.height() * scale.y)));
-    return view;
-}
 
 Result<Image> rasterize(const PatchMesh& mesh, const View& view, const RasterizeOptions& options,
                         Progress* progress) {

@@ -1,6 +1,7 @@
 // See color_equations.h.
 #include "core/vectorize/color_equations.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +12,7 @@ namespace tessera {
 
 namespace {
 
-using Rows = ColorEquations::Rows;
+using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Where pixels say little colours are smooth: the thin-plate energy over a patch, in px, counts this much of
 // a squared error; and nothing drifts: a squared factor counts this much of a patch's pixels.
@@ -49,8 +50,10 @@ class EquationBuilder {
             if (!alive) continue;
             auto& patch = m.patches[p];
             patch.count = int(choices[p].sites.size());
-            patch.gram = Eigen::MatrixXd::Zero(patch.count, patch.count);
-            patch.moments = Eigen::MatrixXd::Zero(patch.count, mesh.channels());
+            const auto count = size_t(patch.count);
+            patch.gram.assign(count * count, 0);
+            patch.moments.assign(count * size_t(mesh.channels()), 0);
+            for (size_t k = 0; k < count; ++k) patch.gram[k * (count + 1)] = kRidge;
         }
     }
 
@@ -161,17 +164,18 @@ void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& part
     Eigen::MatrixXf gram = Eigen::MatrixXf::Zero(patch.count, patch.count);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(means);
     gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-    patch.gram = gram.cast<double>();
+    Eigen::Map<Eigen::MatrixXd> own(patch.gram.data(), patch.count, patch.count);
+    own = gram.cast<double>();
     const double area = std::max(1.0, weight);
     for (int k = 0; k < patch.count; ++k)
-        patch.gram(k, k) += kRidge * area + kBending / area * m.bases[p.index].energy(k);
-    patch.moments = (means * targets).cast<double>();
+        own(k, k) += kRidge * area + kBending / area * m.bases[p.index].energy(k);
+    Eigen::Map<Eigen::MatrixXd>(patch.moments.data(), patch.count, mMesh.channels()) =
+        (means * targets).cast<double>();
     if (mBlur.inReach(p)) addBlurTerms(p, pixels, shared, parts);
 }
 
 void EquationBuilder::addPixels(Progress& progress) {
     const PixelSampler sampler(mMesh, mSide);
-    mMesh.forEachPatch([&](PatchId p) { m.patches[p.index].gram.diagonal().array() += kRidge; });
     const size_t first = mParts.size();
     mParts.resize(first + sampler.patches().size());
     parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
@@ -282,10 +286,12 @@ void EquationBuilder::finish() {
         number[id] = rows++;
         pixelOfRow.push_back(id);
     }
-    m.targets = Eigen::MatrixXf::Zero(rows, mMesh.channels());
+    m.rowCount = rows;
+    m.targets.assign(size_t(rows) * size_t(mMesh.channels()), 0);
     for (uint32_t row = 0; row < rows; ++row)
         if (pixelOfRow[row] < m.pixelRows)
-            for (int c = 0; c < mMesh.channels(); ++c) m.targets(row, c) = mPicture.plane(c)[pixelOfRow[row]];
+            for (int c = 0; c < mMesh.channels(); ++c)
+                m.targets[size_t(c) * rows + row] = mPicture.plane(c)[pixelOfRow[row]];
     for (ColorEquations::Seam& seam : m.seams) seam.firstRow = number[seam.firstRow];
     m.pixelRows =
         uint32_t(std::lower_bound(pixelOfRow.begin(), pixelOfRow.end(), m.pixelRows) - pixelOfRow.begin());
@@ -299,11 +305,12 @@ void EquationBuilder::finish() {
             for (const Place& place : own)
                 if (patch.rowIds.empty() || patch.rowIds.back() != number[place.id])
                     patch.rowIds.push_back(number[place.id]);
-            patch.rows = Rows::Zero(Eigen::Index(patch.rowIds.size()), patch.count);
-            Eigen::Index at = -1;
+            const auto count = size_t(patch.count);
+            patch.rows.assign(patch.rowIds.size() * count, 0);
+            float* row = patch.rows.data();
             for (size_t i = 0; i < own.size(); ++i) {
-                if (i == 0 || own[i].id != own[i - 1].id) ++at;
-                for (int k = 0; k < patch.count; ++k) patch.rows(at, k) += own[i].factors[k];
+                if (i > 0 && own[i].id != own[i - 1].id) row += count;
+                for (size_t k = 0; k < count; ++k) row[k] += own[i].factors[k];
             }
         }
     });

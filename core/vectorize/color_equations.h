@@ -2,7 +2,6 @@
 // over its square, and equations by which patches agree along edges that are no features.
 #pragma once
 
-#include <Eigen/Dense>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -20,13 +19,13 @@ namespace tessera {
 // equation of one patch alone goes into its Gram matrix. One of several patches (a pixel across an edge or
 // near a blurred feature, a point of a seam) is a row, whose factors lie with the patches.
 struct ColorEquations {
-    using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    // Matrices lie row after row.
     struct Patch {
-        int count = 0;  // of unknowns: the most that a channel has
-        Eigen::MatrixXd gram;
-        Eigen::MatrixXd moments;       // (count x channels)
+        int count = 0;                 // of unknowns: the most that a channel has
+        std::vector<double> gram;      // (count x count), symmetric
+        std::vector<double> moments;   // (channels x count)
         std::vector<uint32_t> rowIds;  // ascending
-        Rows rows;                     // (rowIds.size() x count)
+        std::vector<float> rows;       // (rowIds.size() x count)
     };
     struct Entry {
         uint32_t patch;
@@ -37,8 +36,9 @@ struct ColorEquations {
     std::vector<NewtonBasis> bases;    // by patch id
     std::vector<uint32_t> firstEntry;  // by row, into entries
     std::vector<Entry> entries;
-    Eigen::MatrixXf targets;  // (rows x channels)
-    uint32_t pixelRows = 0;   // rows from here on are of seams
+    size_t rowCount = 0;
+    std::vector<float> targets;  // (channels x rowCount)
+    uint32_t pixelRows = 0;      // rows from here on are of seams
     // The rows of one edge, at points evenly spaced from end to end: colours, or by turns colours and
     // gradients. The square of what a row of colours comes to is weight * length * difference^2.
     struct Seam {

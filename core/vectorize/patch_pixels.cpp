@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/export/patch_inverse.h"
+#include "core/mesh/patch_inverse.h"
 
 namespace tessera {
 

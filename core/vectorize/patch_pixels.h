@@ -6,8 +6,8 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "core/export/scan_conversion.h"
 #include "core/mesh/patch_mesh.h"
+#include "core/mesh/scan_conversion.h"
 
 namespace tessera {
 

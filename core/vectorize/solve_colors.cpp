@@ -36,6 +36,14 @@ double dot(const PatchVectors& a, const PatchVectors& b) {
     return sum;
 }
 
+using RowsOf = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+RowsOf rowsOf(const ColorEquations::Patch& patch) {
+    return {patch.rows.data(), Eigen::Index(patch.rowIds.size()), patch.count};
+}
+Eigen::Map<const MatrixXd> gramOf(const ColorEquations::Patch& patch) {
+    return {patch.gram.data(), patch.count, patch.count};
+}
+
 // The normal equations of one channel, A x = b, with patches' first terms alone.
 class ChannelSystem {
   public:
@@ -47,7 +55,7 @@ class ChannelSystem {
           mTerms(equations.patches.size(), 0),
           mFactors(equations.patches.size()),
           mPartial(equations.patches.size()),
-          mTotals(equations.targets.rows()) {
+          mTotals(Eigen::Index(equations.rowCount)) {
         mRight.resize(m.patches.size());
         parallelFor(m.patches.size(), 8, [&](size_t begin, size_t end) {
             for (size_t p = begin; p < end; ++p) {
@@ -58,12 +66,14 @@ class ChannelSystem {
                 for (size_t i = 0; i < patch.rowIds.size(); ++i) {
                     rowWeights(Eigen::Index(i)) = mWeights(patch.rowIds[i]);
                     targets(Eigen::Index(i)) =
-                        mWeights(patch.rowIds[i]) * m.targets(patch.rowIds[i], channel);
+                        mWeights(patch.rowIds[i]) * m.targets[size_t(channel) * m.rowCount + patch.rowIds[i]];
                 }
-                const auto rows = patch.rows.leftCols(n);
-                mRight[p] = patch.moments.col(channel).head(n) + (rows.transpose() * targets).cast<double>();
+                const auto all = rowsOf(patch);
+                const auto rows = all.leftCols(n);
+                mRight[p] = Eigen::Map<const VectorXd>(patch.moments.data() + channel * patch.count, n) +
+                            (rows.transpose() * targets).cast<double>();
                 const Eigen::MatrixXf own = rows.transpose() * rowWeights.asDiagonal() * rows;
-                mFactors[p].compute(patch.gram.topLeftCorner(n, n) + own.cast<double>());
+                mFactors[p].compute(gramOf(patch).topLeftCorner(n, n) + own.cast<double>());
             }
         });
     }
@@ -75,7 +85,7 @@ class ChannelSystem {
 
     void apply(const PatchVectors& x, PatchVectors& ax) {
         forPatches([&](size_t p) {
-            mPartial[p].noalias() = m.patches[p].rows.leftCols(mTerms[p]) * x[p].cast<float>();
+            mPartial[p].noalias() = rowsOf(m.patches[p]).leftCols(mTerms[p]) * x[p].cast<float>();
         });
         parallelFor(size_t(mTotals.size()), 4096, [&](size_t begin, size_t end) {
             for (size_t row = begin; row < end; ++row) {
@@ -90,8 +100,8 @@ class ChannelSystem {
             VectorXf totals(Eigen::Index(patch.rowIds.size()));
             for (size_t i = 0; i < patch.rowIds.size(); ++i)
                 totals(Eigen::Index(i)) = mTotals(patch.rowIds[i]);
-            ax[p].noalias() = patch.gram.topLeftCorner(mTerms[p], mTerms[p]) * x[p];
-            ax[p] += (patch.rows.leftCols(mTerms[p]).transpose() * totals).cast<double>();
+            ax[p].noalias() = gramOf(patch).topLeftCorner(mTerms[p], mTerms[p]) * x[p];
+            ax[p] += (rowsOf(patch).leftCols(mTerms[p]).transpose() * totals).cast<double>();
         });
     }
 
@@ -230,7 +240,7 @@ Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& s
     if (!progress.step(.6)) return stopped();
 
     std::array<PatchVectors, kMaxChannels> factors;
-    VectorXf weights = VectorXf::Ones(equations.targets.rows());
+    VectorXf weights = VectorXf::Ones(Eigen::Index(equations.rowCount));
     int iterations = 0;
     double seamWeight = 1;
     SeamWeightSearch search;

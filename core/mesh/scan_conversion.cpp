@@ -1,5 +1,5 @@
 // See scan_conversion.h.
-#include "core/export/scan_conversion.h"
+#include "core/mesh/scan_conversion.h"
 
 #include <algorithm>
 #include <cmath>

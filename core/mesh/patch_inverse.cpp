@@ -1,5 +1,5 @@
 // See patch_inverse.h.
-#include "core/export/patch_inverse.h"
+#include "core/mesh/patch_inverse.h"
 
 #include <algorithm>
 #include <cmath>

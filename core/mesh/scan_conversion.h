@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/export/rasterize.h"
+#include "core/mesh/view.h"
 
 namespace tessera {
 
