@@ -46,8 +46,6 @@ int run(const Arguments& arguments) {
         return report({ErrorCode::Usage, "--scale is a number from 1e-6 to 1e6"});
     if (!(arguments.sharpen >= 0 && arguments.sharpen <= kMaxSharpen))
         return report({ErrorCode::Usage, "--sharpen is a number from 0 to 4"});
-    if (arguments.reference && arguments.samples != 1)
-        return report({ErrorCode::Usage, "--reference takes one sample a pixel: leave --samples out"});
     if (const auto writable = checkWritable(arguments.output); !writable) return report(writable.error());
 
     StopOnSignal stop;
@@ -89,16 +87,18 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
                        ->check(CLI::Range(1, 1'000'000));
     scale->excludes(width)->excludes(height);
     width->excludes(height);
-    command->add_option("--samples", arguments->samples, "Samples a pixel, averaged")
-        ->check(CLI::IsMember({1, 4, 16}))
-        ->capture_default_str();
+    auto* samples = command->add_option("--samples", arguments->samples, "Samples a pixel, averaged")
+                        ->check(CLI::IsMember({1, 4, 16}))
+                        ->capture_default_str();
     command
         ->add_option("--sharpen", arguments->sharpen,
                      "Factor on the blur of soft edges: 0 draws them hard, 1 as they are, more softer")
         ->check(CLI::Range(0.0, kMaxSharpen))
         ->capture_default_str();
-    command->add_flag("--reference", arguments->reference,
-                      "Use the slow renderer that the fast one is tested against");
+    command
+        ->add_flag("--reference", arguments->reference,
+                   "Use the slow renderer that the fast one is tested against: one sample a pixel")
+        ->excludes(samples);
     command->add_flag("--quiet", arguments->quiet, "Show no progress");
     command->callback([arguments, &exitCode] { exitCode = run(*arguments); });
 }

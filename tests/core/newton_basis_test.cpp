@@ -1,0 +1,108 @@
+// The Newton basis over sites: values at centres, prefixes, energies, derivatives, splines of factors.
+#include "core/mesh/newton_basis.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+namespace tessera {
+namespace {
+
+const std::vector<uint8_t> kSites{0, 1, 2, 37, 5, 60, 18, 44, 9, 31};
+
+std::vector<float> valuesAt(const NewtonBasis& basis, glm::dvec2 at) {
+    const auto x = float(at.x), y = float(at.y);
+    std::vector<float> values(size_t(basis.size()));
+    basis.evaluate(&x, &y, 1, values.data(), 1);
+    return values;
+}
+
+TEST(NewtonBasis, IsOneAtItsCentreAndNothingAtThoseBefore) {
+    const NewtonBasis basis(kSites);
+    for (size_t k = 0; k < kSites.size(); ++k) {
+        const auto values = valuesAt(basis, centreSites()[kSites[k]]);
+        EXPECT_NEAR(values[k], 1, 1e-4);
+        for (size_t j = k + 1; j < kSites.size(); ++j) EXPECT_NEAR(values[j], 0, 1e-4) << j << " at " << k;
+    }
+}
+
+TEST(NewtonBasis, APrefixOfTheSitesHasThePrefixOfTheFunctions) {
+    const NewtonBasis all(kSites), some(std::span<const uint8_t>(kSites).first(6));
+    const auto a = valuesAt(all, {.31, .27}), b = valuesAt(some, {.31, .27});
+    ASSERT_EQ(b.size(), 6U);
+    for (size_t k = 0; k < 6; ++k) EXPECT_FLOAT_EQ(a[k], b[k]);
+}
+
+TEST(NewtonBasis, DerivativesAreThoseOfTheValues) {
+    const NewtonBasis basis(kSites);
+    const size_t n = kSites.size();
+    const glm::dvec2 at(.42, .33);
+    constexpr double kStep = 1e-5;
+    std::vector<double> value(n), dx(n), dy(n), ahead(n), unused(n);
+    basis.evaluateWithDerivatives(at, value.data(), dx.data(), dy.data());
+    basis.evaluateWithDerivatives(at + glm::dvec2(kStep, 0), ahead.data(), unused.data(), unused.data());
+    for (size_t k = 0; k < n; ++k)
+        EXPECT_NEAR((ahead[k] - value[k]) / kStep, dx[k], 2e-2 * (1 + std::abs(dx[k])));
+    basis.evaluateWithDerivatives(at + glm::dvec2(0, kStep), ahead.data(), unused.data(), unused.data());
+    for (size_t k = 0; k < n; ++k)
+        EXPECT_NEAR((ahead[k] - value[k]) / kStep, dy[k], 2e-2 * (1 + std::abs(dy[k])));
+    const auto single = valuesAt(basis, at);
+    for (size_t k = 0; k < n; ++k) EXPECT_NEAR(single[k], value[k], 1e-4);
+}
+
+TEST(NewtonBasis, ASplineOfFactorsIsTheirSum) {
+    const NewtonBasis basis(kSites);
+    const std::vector<double> luma{.2, .5, .9, .1, -.2, .05, .3, 0, -.1, .07}, chroma{.1, .2, .3};
+    const std::array<std::span<const double>, 3> factors{luma, chroma, chroma};
+    const PatchSpline spline = basis.spline(factors);
+    EXPECT_EQ(spline.terms, (std::array<uint8_t, kMaxChannels>{10, 0, 0, 0}));
+    EXPECT_EQ(spline.sites, kSites);
+    for (const glm::dvec2 at : {glm::dvec2(.5, .2), glm::dvec2(.1, .05), glm::dvec2(.55, .6)}) {
+        const auto values = valuesAt(basis, at);
+        double sum = 0;
+        for (size_t k = 0; k < luma.size(); ++k) sum += luma[k] * double(values[k]);
+        EXPECT_NEAR(evaluateSpline(spline, 0, at), sum, 2e-4);
+        EXPECT_NEAR(evaluateSpline(spline, 1, at),
+                    .1 * double(values[0]) + .2 * double(values[1]) + .3 * double(values[2]), 1e-5);
+    }
+}
+
+// The energy of a spline is the quadratic form of its alphas in phi; planes have none.
+TEST(NewtonBasis, EnergiesAddUp) {
+    const NewtonBasis basis(kSites);
+    std::vector<double> factors{.2, .5, .9, .1, -.2, .05, .3, .15, -.1, .07};
+    const std::array<std::span<const double>, 1> channel{factors};
+    const PatchSpline spline = basis.spline(channel);
+    double direct = 0, sum = 0;
+    for (int i = 0; i < spline.terms[0]; ++i)
+        for (int j = 0; j < spline.terms[0]; ++j) {
+            const glm::dvec2 d = spline.centre(i) - spline.centre(j);
+            direct += double(spline.coefficients[size_t(3 + i)]) *
+                      double(spline.coefficients[size_t(3 + j)]) * tpsKernel(d.x * d.x + d.y * d.y);
+        }
+    for (size_t k = 0; k < factors.size(); ++k) sum += basis.energy(int(k)) * factors[k] * factors[k];
+    EXPECT_EQ(basis.energy(1), 0);
+    EXPECT_NEAR(direct, sum, 1e-3 * sum);
+}
+
+TEST(NewtonBasisDeathTest, RefusesSitesTwice) {
+    const std::vector<uint8_t> twice{0, 1, 2, 20, 20};
+    EXPECT_DEATH(NewtonBasis basis{std::span<const uint8_t>(twice)}, "");
+}
+
+TEST(SiteFunctions, SpanTheNewtonFunctions) {
+    // Function 3 of the basis is a multiple of the site's function less a plane: compare second differences.
+    const NewtonBasis basis(kSites);
+    const std::array<float, 3> x{.3F, .4F, .5F}, y{.2F, .25F, .3F};
+    std::vector<float> sites(kCentreSites * 3), newton(kSites.size() * 3);
+    evaluateSiteFunctions(x.data(), y.data(), 3, sites.data(), 3);
+    basis.evaluate(x.data(), y.data(), 3, newton.data(), 3);
+    const auto bend = [](const float* v) { return double(v[0]) - 2 * double(v[1]) + double(v[2]); };
+    const double factor = bend(newton.data() + 9) / bend(sites.data() + 3 * size_t(kSites[3]));
+    EXPECT_NEAR(factor, basis.energy(3), 1e-2 * factor);
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(sites[i] + sites[3 + i] + sites[6 + i], 1, 1e-6);
+}
+
+}  // namespace
+}  // namespace tessera
