@@ -46,10 +46,16 @@ struct InverseFactorials {
 };
 constexpr InverseFactorials kInverseFactorial;
 
+// Strips eight pixels wide from top to bottom; a row of a strip holds its channels one after the other. What
+// a triangle needs lies close together.
 struct Pixels {
     const float* first;
-    size_t stride, plane;
     int width, height;
+
+    template <int kChannels>
+    TESSERA_INLINE const float* row(int x, int y) const {
+        return first + (size_t(x / kLanes) * size_t(height) + size_t(y)) * size_t(kChannels * kLanes);
+    }
 };
 
 // Coordinates in which the triangle is about as wide as high and not slanted: x' = (x - cx) / scaleX,
@@ -70,7 +76,7 @@ struct Sums {
     Quad energy;
 };
 
-// The pixels top <= y < bottom of eight neighbouring columns, of which some may be empty.
+// The pixels top <= y < bottom of the columns of a strip, of which some may be empty.
 struct Columns {
     int first;
     int32_t top[kLanes], bottom[kLanes];
@@ -78,6 +84,16 @@ struct Columns {
 
 TESSERA_INLINE Quad quad(double value) {
     return Quad{value, value, value, value};
+}
+
+TESSERA_INLINE Quad load(const double* from) {
+    Quad value;
+    std::memcpy(&value, from, sizeof value);
+    return value;
+}
+
+TESSERA_INLINE void store(Quad value, double* to) {
+    std::memcpy(to, &value, sizeof value);
 }
 
 TESSERA_INLINE void convertHalf(const Floats& from, int half, Quad& to) {
@@ -98,13 +114,12 @@ TESSERA_INLINE void addGram(const Frame& f, const Columns& c, int half, Quad* gr
     const Quad x = dx * f.inverseX;
     const Quad middle = ((top + bottom) * .5 - f.cy - f.shear * dx) * f.inverseY;
     const Quad n = bottom - top, n2 = n * n, cubic = n * (n2 - 1);
-    const Quad even[kPowers] = {
-        n,
-        cubic * f.even[1],
-        cubic * (3 * n2 - 7) * f.even[2],
-        cubic * ((3 * n2 - 18) * n2 + 31) * f.even[3],
-        cubic * (((5 * n2 - 55) * n2 + 239) * n2 - 381) * f.even[4],
-        cubic * ((((3 * n2 - 52) * n2 + 410) * n2 - 1636) * n2 + 2555) * f.even[5]};
+    const Quad even[kPowers] = {n,
+                                cubic * f.even[1],
+                                cubic * (3 * n2 - 7) * f.even[2],
+                                cubic * ((3 * n2 - 18) * n2 + 31) * f.even[3],
+                                cubic * (((5 * n2 - 55) * n2 + 239) * n2 - 381) * f.even[4],
+                                cubic * ((((3 * n2 - 52) * n2 + 410) * n2 - 1636) * n2 + 2555) * f.even[5]};
     Quad power[kGramDegree + 1], xPower[kGramDegree + 1];
     power[0] = xPower[0] = quad(1);
     for (int i = 1; i <= kGramDegree; ++i) {
@@ -126,10 +141,11 @@ TESSERA_INLINE void addGram(const Frame& f, const Columns& c, int half, Quad* gr
 constexpr int kChunk = 64;
 
 // Of one channel: along the columns over y, then times powers of x.
-TESSERA_INLINE void addMoments(const float* pixel, size_t stride, int rows, float base, const Floats* ys,
-                               const Ints* inside, const Quad* x, Quad* moments, Quad& energySum) {
+template <int kChannels>
+TESSERA_INLINE void addMoments(const float* pixel, int rows, float base, const Floats* ys, const Ints* inside,
+                               const Quad* x, Quad* moments, Quad& energySum) {
     Floats sums[kPowers] = {}, energy = {};
-    for (int r = 0; r < rows; ++r, pixel += stride) {
+    for (int r = 0; r < rows; ++r, pixel += kChannels * kLanes) {
         Floats value;
         std::memcpy(&value, pixel, sizeof value);
         value = (Floats)((Ints)(value - base) & inside[r]);
@@ -161,13 +177,16 @@ TESSERA_INLINE void addMoments(const float* pixel, size_t stride, int rows, floa
 
 template <int kChannels>
 TESSERA_INLINE void addColumns(const Pixels& p, const Frame& f, const Columns& c, Sums<kChannels>& s) {
-    addGram(f, c, 0, s.gram);
-    addGram(f, c, 1, s.gram);
     int32_t top = p.height, bottom = 0;
-    for (int k = 0; k < kLanes; ++k) {
-        if (c.top[k] >= c.bottom[k]) continue;
-        top = std::min(top, c.top[k]);
-        bottom = std::max(bottom, c.bottom[k]);
+    for (int half = 0; half < 2; ++half) {
+        bool any = false;
+        for (int k = half * kQuad; k < (half + 1) * kQuad; ++k) {
+            if (c.top[k] >= c.bottom[k]) continue;
+            any = true;
+            top = std::min(top, c.top[k]);
+            bottom = std::max(bottom, c.bottom[k]);
+        }
+        if (any) addGram(f, c, half, s.gram);
     }
     Quad x[2], start[2];
     for (int half = 0; half < 2; ++half) {
@@ -193,8 +212,8 @@ TESSERA_INLINE void addColumns(const Pixels& p, const Frame& f, const Columns& c
             inside[r] = (tops <= y0 + r) & (bottoms > y0 + r);
         }
         for (int k = 0; k < kChannels; ++k)
-            addMoments(p.first + size_t(k) * p.plane + size_t(y0) * p.stride + size_t(c.first), p.stride, rows,
-                       f.base[k], ys, inside, x, s.moments[k], s.energy);
+            addMoments<kChannels>(p.row<kChannels>(c.first, y0) + k * kLanes, rows, f.base[k], ys, inside, x,
+                                  s.moments[k], s.energy);
     }
 }
 
@@ -215,7 +234,7 @@ TESSERA_INLINE void addOutline(const Pixels& p, const Frame& f, std::span<const 
     }
     const int x0 = std::max(0, ceiling(left - .5)), x1 = std::min(p.width, ceiling(right - .5));
     constexpr int kMaxCrossings = 16;
-    for (int x = x0; x < x1; x += kLanes) {
+    for (int x = x0 / kLanes * kLanes; x < x1; x += kLanes) {
         const int end = std::min(x + kLanes, x1);
         double crossings[kLanes][kMaxCrossings];
         int counts[kLanes] = {};
@@ -257,10 +276,10 @@ TESSERA_INLINE void addOutline(const Pixels& p, const Frame& f, std::span<const 
 
 // The sums of four vectors' lanes.
 TESSERA_INLINE void total(const Quad* v, double* out) {
-    const Quad ab = __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6) +
-                    __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7);
-    const Quad cd = __builtin_shufflevector(v[2], v[3], 0, 4, 2, 6) +
-                    __builtin_shufflevector(v[2], v[3], 1, 5, 3, 7);
+    const Quad ab =
+        __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6) + __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7);
+    const Quad cd =
+        __builtin_shufflevector(v[2], v[3], 0, 4, 2, 6) + __builtin_shufflevector(v[2], v[3], 1, 5, 3, 7);
     const Quad sum =
         __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
     std::memcpy(out, &sum, sizeof sum);
@@ -270,9 +289,10 @@ TESSERA_INLINE void total(const Quad* v, double* out) {
 template <int kChannels>
 struct Equations {
     static constexpr int kVectors = (kTerms + kChannels + kQuad - 1) / kQuad;
-    static constexpr int kColumns = (kTerms + kQuad - 1) / kQuad * kQuad;
+    static constexpr int kRows = kVectors * kQuad;
 
-    alignas(sizeof(Quad)) double at[kColumns][kVectors * kQuad];
+    alignas(sizeof(Quad)) double at[kTerms][kRows];
+    double own[kTerms];  // the diagonal as it was
     double energy;
 };
 
@@ -298,55 +318,72 @@ TESSERA_INLINE void assemble(const Sums<kChannels>& s, Equations<kChannels>& e) 
             for (int d = degree; d <= kDegree; ++d)
                 std::memcpy(column + term(d, 0), gram + term(degree + d, j), kCopied * sizeof(double));
             for (int c = 0; c < kChannels; ++c) column[kTerms + c] = moments[c][term(degree, j)];
+            e.own[term(degree, j)] = gram[term(2 * degree, 2 * j)];
         }
+}
+
+// The pivots of the four terms of a block, one after the other: what they take, and what the terms of the
+// block after them keep. Leaves each column's rows over its pivot in `factors`.
+template <int kChannels, int kBlock>
+TESSERA_INLINE double takeBlock(Equations<kChannels>& e, double (*factors)[Equations<kChannels>::kRows]) {
+    constexpr int kVectors = Equations<kChannels>::kVectors;
+    constexpr int kFirst = kBlock * kQuad, kEnd = std::min(kFirst + kQuad, kTerms);
+    double taken = 0;
+#pragma GCC unroll 4
+    for (int p = kFirst; p < kEnd; ++p) {
+        const double* const column = e.at[p];
+        double* const factor = factors[p - kFirst];
+        // A term that the pixels cannot tell from the ones before takes nothing.
+        constexpr double kDependent = 1e-9;
+        const double pivot = column[p];
+        const double inverse = pivot > kDependent * e.own[p] && pivot > 0 ? 1 / pivot : 0;
+        Quad below[kVectors - kBlock];
+#pragma GCC unroll 7
+        for (int r = kBlock; r < kVectors; ++r) {
+            below[r - kBlock] = load(column + r * kQuad);
+            store(below[r - kBlock] * inverse, factor + r * kQuad);
+        }
+        for (int c = 0; c < kChannels; ++c) taken += column[kTerms + c] * factor[kTerms + c];
+#pragma GCC unroll 3
+        for (int q = p + 1; q < kEnd; ++q)
+#pragma GCC unroll 7
+            for (int r = kBlock; r < kVectors; ++r)
+                store(load(e.at[q] + r * kQuad) - below[r - kBlock] * factor[q], e.at[q] + r * kQuad);
+    }
+    return taken;
+}
+
+// Takes a block's share from the columns after it, then goes on with those; returns the energy taken.
+template <int kChannels, int kBlock>
+TESSERA_INLINE double takeFrom(Equations<kChannels>& e) {
+    constexpr int kVectors = Equations<kChannels>::kVectors;
+    constexpr int kFirst = kBlock * kQuad, kEnd = kFirst + kQuad;
+    double factors[kQuad][Equations<kChannels>::kRows];
+    const double taken = takeBlock<kChannels, kBlock>(e, factors);
+    if constexpr (kEnd < kTerms) {
+#pragma GCC unroll 7
+        for (int r = kBlock + 1; r < kVectors; ++r) {
+            Quad b[kQuad];
+            for (int k = 0; k < kQuad; ++k) b[k] = load(e.at[kFirst + k] + r * kQuad);
+            for (int q = kEnd; q < std::min((r + 1) * kQuad, kTerms); ++q) {
+                double* const a = e.at[q] + r * kQuad;
+                store(load(a) - ((b[0] * factors[0][q] + b[1] * factors[1][q]) +
+                                 (b[2] * factors[2][q] + b[3] * factors[3][q])),
+                      a);
+            }
+        }
+        return taken + takeFrom<kChannels, kBlock + 1>(e);
+    }
+    return taken;
 }
 
 // Energy less what the polynomials take, by L D L^T in blocks of four columns: each term takes the square of
 // what is left of its moment over its pivot.
 template <int kChannels>
 TESSERA_INLINE double residual(const Sums<kChannels>& sums) {
-    constexpr int kVectors = Equations<kChannels>::kVectors;
     Equations<kChannels> e;
     assemble(sums, e);
-    double own[kTerms], taken = 0;
-    for (int p = 0; p < kTerms; ++p) own[p] = e.at[p][p];
-    for (int block = 0; block * kQuad < kTerms; ++block) {
-        const int first = block * kQuad, end = std::min(first + kQuad, kTerms);
-        double inverse[kQuad] = {};
-        for (int p = first; p < end; ++p) {
-            const double* const column = e.at[p];
-            // A term that the pixels cannot tell from the ones before takes nothing.
-            constexpr double kDependent = 1e-9;
-            const double pivot = column[p];
-            const double over = pivot > kDependent * own[p] && pivot > 0 ? 1 / pivot : 0;
-            inverse[p - first] = over;
-            for (int c = 0; c < kChannels; ++c)
-                taken += column[kTerms + c] * column[kTerms + c] * over;
-            for (int q = p + 1; q < end; ++q) {
-                const double factor = column[q] * over;
-                for (int r = block; r < kVectors; ++r) {
-                    Quad a, b;
-                    std::memcpy(&a, e.at[q] + r * kQuad, sizeof a);
-                    std::memcpy(&b, column + r * kQuad, sizeof b);
-                    a -= b * factor;
-                    std::memcpy(e.at[q] + r * kQuad, &a, sizeof a);
-                }
-            }
-        }
-        if (end == kTerms) break;
-        for (int q = end; q < kTerms; ++q) {
-            double factor[kQuad];
-            for (int k = 0; k < kQuad; ++k) factor[k] = e.at[first + k][q] * inverse[k];
-            for (int r = q / kQuad; r < kVectors; ++r) {
-                Quad a, b[kQuad];
-                std::memcpy(&a, e.at[q] + r * kQuad, sizeof a);
-                for (int k = 0; k < kQuad; ++k) std::memcpy(&b[k], e.at[first + k] + r * kQuad, sizeof a);
-                a -= (b[0] * factor[0] + b[1] * factor[1]) + (b[2] * factor[2] + b[3] * factor[3]);
-                std::memcpy(e.at[q] + r * kQuad, &a, sizeof a);
-            }
-        }
-    }
-    return std::max(0.0, e.energy - taken);
+    return std::max(0.0, e.energy - takeFrom<kChannels, 0>(e));
 }
 
 template <int kChannels>
@@ -369,13 +406,16 @@ PolynomialFit::PolynomialFit(const Image& picture)
     : mWidth(picture.width()),
       mHeight(picture.height()),
       mChannels(picture.channels()),
-      mStride((size_t(mWidth) + 2 * kLanes - 1) / kLanes * kLanes),
-      mPixels(mStride * size_t(mHeight) * size_t(mChannels)) {
+      mPixels(size_t(mWidth + kLanes - 1) / kLanes * kLanes * size_t(mHeight) * size_t(mChannels)) {
     TESSERA_CHECK(mChannels == 3 || mChannels == 4);
     for (int c = 0; c < mChannels; ++c)
         for (int y = 0; y < mHeight; ++y)
-            std::copy_n(picture.plane(c).data() + size_t(y) * size_t(mWidth), mWidth,
-                        mPixels.data() + (size_t(c) * size_t(mHeight) + size_t(y)) * mStride);
+            for (int x = 0; x < mWidth; ++x) mPixels[index(x, y, c)] = picture.at(x, y, c);
+}
+
+size_t PolynomialFit::index(int x, int y, int c) const {
+    const size_t row = size_t(x / kLanes) * size_t(mHeight) + size_t(y);
+    return (row * size_t(mChannels) + size_t(c)) * kLanes + size_t(x % kLanes);
 }
 
 double PolynomialFit::error(const std::array<glm::dvec2, 3>& corners,
@@ -388,7 +428,7 @@ double PolynomialFit::error(const std::array<glm::dvec2, 3>& corners,
         xy += d.x * d.y;
         yy += d.y * d.y;
     }
-    const Pixels pixels{mPixels.data(), mStride, mStride * size_t(mHeight), mWidth, mHeight};
+    const Pixels pixels{mPixels.data(), mWidth, mHeight};
     // Half the extent of an equilateral triangle of the same second moments, about; never below half a pixel.
     Frame frame;
     frame.cx = centre.x;
@@ -402,8 +442,7 @@ double PolynomialFit::error(const std::array<glm::dvec2, 3>& corners,
     for (int k = 0; k < kPowers; ++k, power *= frame.inverseY * frame.inverseY)
         frame.even[k] = power * kInverseFactorial.at[2 * k] / kDivisors[k];
     const int px = std::clamp(int(centre.x), 0, mWidth - 1), py = std::clamp(int(centre.y), 0, mHeight - 1);
-    for (int c = 0; c < mChannels; ++c)
-        frame.base[c] = pixels.first[size_t(c) * pixels.plane + size_t(py) * mStride + size_t(px)];
+    for (int c = 0; c < mChannels; ++c) frame.base[c] = mPixels[index(px, py, c)];
     return mChannels == 3 ? error3(pixels, frame, outline) : error4(pixels, frame, outline);
 }
 

@@ -30,9 +30,10 @@ class PolynomialFit {
     double error(const std::array<glm::dvec2, 3>& corners) const { return error(corners, corners); }
 
   private:
+    size_t index(int x, int y, int c) const;
+
     int mWidth, mHeight, mChannels;
-    size_t mStride;
-    std::vector<float> mPixels;  // planes of rows, padded for whole vectors
+    std::vector<float> mPixels;  // strips of columns, see polynomial_fit.cpp
 };
 
 }  // namespace tessera
