@@ -10,6 +10,8 @@
 
 // All of error() is built twice, with and without AVX2. Both do the same arithmetic, so that results do not
 // depend on the machine.
+// No vector crosses a call, for whose conventions the compiler warns: what has vectors is inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
 #define TESSERA_INLINE inline __attribute__((always_inline))
 #define TESSERA_CLONES __attribute__((target_clones("avx2", "default")))
 
