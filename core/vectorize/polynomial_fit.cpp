@@ -94,7 +94,7 @@ TESSERA_INLINE Quad load(const double* from) {
     return value;
 }
 
-TESSERA_INLINE void store(Quad value, double* to) {
+TESSERA_INLINE void store(const Quad& value, double* to) {
     std::memcpy(to, &value, sizeof value);
 }
 
