@@ -45,8 +45,13 @@ glm::dvec2 unit(glm::dvec2 v) {
 
 }  // namespace
 
-Refiner::Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings)
-    : m(cut), mFit(fit), mTolerancePx(settings.featureTolerancePx), mError(cut.mesh.faceCapacity(), 0) {
+Refiner::Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings,
+                 std::stop_token stop)
+    : m(cut),
+      mFit(fit),
+      mTolerancePx(settings.featureTolerancePx),
+      mStop(std::move(stop)),
+      mError(cut.mesh.faceCapacity(), 0) {
     std::vector<FaceId> all;
     for (uint32_t f = 0; f < mError.size(); ++f)
         if (m.mesh.alive(FaceId(f))) all.push_back(FaceId(f));
@@ -63,7 +68,7 @@ double Refiner::totalError() const {
 void Refiner::updateFaces(const std::vector<FaceId>& faces) {
     mError.resize(m.mesh.faceCapacity(), 0);
     parallelFor(faces.size(), 16, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) updateFace(faces[i]);
+        for (size_t i = begin; i < end && !mStop.stop_requested(); ++i) updateFace(faces[i]);
     });
 }
 
@@ -370,7 +375,7 @@ double Refiner::flipCost(EdgeId e) const {
 size_t Refiner::flip() {
     std::vector<double> costs(m.mesh.edgeCapacity(), kNever);
     parallelFor(costs.size(), 32, [&](size_t begin, size_t end) {
-        for (size_t e = begin; e < end; ++e)
+        for (size_t e = begin; e < end && !mStop.stop_requested(); ++e)
             if (m.mesh.alive(EdgeId(uint32_t(e)))) costs[e] = flipCost(EdgeId(uint32_t(e)));
     });
     std::vector<uint32_t> order;
@@ -422,7 +427,7 @@ double Refiner::splitCost(EdgeId e) const {
 void Refiner::splitTo(size_t faces) {
     std::vector<double> costs(m.mesh.edgeCapacity(), kNever);
     parallelFor(costs.size(), 32, [&](size_t begin, size_t end) {
-        for (size_t e = begin; e < end; ++e)
+        for (size_t e = begin; e < end && !mStop.stop_requested(); ++e)
             if (m.mesh.alive(EdgeId(uint32_t(e)))) costs[e] = splitCost(EdgeId(uint32_t(e)));
     });
     std::vector<uint32_t> order;
@@ -525,14 +530,15 @@ size_t Refiner::move(double step) {
     std::vector<uint8_t> moved(colour.size(), 0);
     for (const auto& vertices : classes)
         parallelFor(vertices.size(), 4, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i) moved[vertices[i].index] = tryMove(vertices[i], step);
+            for (size_t i = begin; i < end && !mStop.stop_requested(); ++i)
+                moved[vertices[i].index] = tryMove(vertices[i], step);
         });
     return size_t(std::accumulate(moved.begin(), moved.end(), 0));
 }
 
 Result<CutMesh> refine(CutMesh cut, const PolynomialFit& fit, const VectorizeSettings& settings,
                        StageReport& report, std::string& shortfall, Progress& progress) {
-    Refiner refiner(cut, fit, settings);
+    Refiner refiner(cut, fit, settings, progress.stopToken());
     const auto wanted = size_t(settings.patches);
     refiner.flip();
     refiner.move(.15);

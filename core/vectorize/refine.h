@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -29,8 +30,10 @@ class Refiner {
   public:
     static constexpr double kMinAngleDegrees = 8;
 
-    // Keeps references. `fit` over the picture with hard features.
-    Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings);
+    // Keeps references. `fit` over the picture with hard features. Where `stop` is asked for, the operations
+    // end soon, with the mesh sound but its errors out of date.
+    Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings,
+            std::stop_token stop = {});
 
     size_t faceCount() const { return m.mesh.faceCount(); }
     // Sum over pixels and channels, as the polynomials have it.
@@ -90,6 +93,7 @@ class Refiner {
     CutMesh& m;
     const PolynomialFit& mFit;
     double mTolerancePx;
+    std::stop_token mStop;
     std::vector<double> mError;  // by face
 };
 

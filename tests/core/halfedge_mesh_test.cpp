@@ -366,6 +366,64 @@ TEST(Compacted, DropsDeletedElementsAndTellsTheOldIds) {
     }
 }
 
+TEST(Split, OfAnEdgeBetweenTwoFaces) {
+    HalfedgeMesh mesh = square();
+    const HalfedgeMesh before = mesh;
+    const EdgeId e = HalfedgeMesh::edge(between(mesh, 0, 2));
+    const VertexId start = mesh.origin(HalfedgeMesh::halfedge(e)),
+                   end = mesh.target(HalfedgeMesh::halfedge(e));
+    const VertexId v = mesh.split(e);
+    EXPECT_THAT(connectivityViolations(mesh), IsEmpty());
+    EXPECT_EQ(v, VertexId(4));
+    EXPECT_EQ(facesOf(mesh), (Triangles{{0, 1, 4}, {0, 4, 3}, {1, 2, 4}, {2, 3, 4}}));
+    EXPECT_FALSE(mesh.onBorder(v));
+    // The edge keeps its start; the first new one runs on to its old end.
+    EXPECT_EQ(mesh.origin(HalfedgeMesh::halfedge(e)), start);
+    EXPECT_EQ(mesh.target(HalfedgeMesh::halfedge(e)), v);
+    const HalfedgeId onward = HalfedgeMesh::halfedge(EdgeId(uint32_t(before.edgeCapacity())));
+    EXPECT_EQ(mesh.origin(onward), v);
+    EXPECT_EQ(mesh.target(onward), end);
+    EXPECT_EQ(facesOf(before).size(), 2U);  // snapshots stay
+}
+
+TEST(Split, OfAnEdgeOnTheBorder) {
+    for (const bool turned : {false, true}) {
+        HalfedgeMesh mesh = turned ? make(3, {{1, 2, 0}}) : make(3, {{0, 1, 2}});
+        const VertexId v = mesh.split(HalfedgeMesh::edge(between(mesh, 0, 1)));
+        EXPECT_THAT(connectivityViolations(mesh), IsEmpty());
+        EXPECT_TRUE(mesh.onBorder(v));
+        EXPECT_EQ(facesOf(mesh), (Triangles{{0, 3, 2}, {1, 2, 3}}));
+        EXPECT_EQ(mesh.edgeCount(), 5U);
+    }
+}
+
+TEST(Split, OfAFace) {
+    HalfedgeMesh mesh = square();
+    const FaceId f = mesh.face(between(mesh, 0, 1));
+    const HalfedgeId first = mesh.halfedge(f);
+    const VertexId v = mesh.split(f);
+    EXPECT_THAT(connectivityViolations(mesh), IsEmpty());
+    EXPECT_EQ(facesOf(mesh), (Triangles{{0, 1, 4}, {0, 2, 3}, {0, 4, 2}, {1, 2, 4}}));
+    EXPECT_EQ(valence(mesh, v.index), 3);
+    EXPECT_EQ(mesh.face(first), f);
+}
+
+// The vertex of a split can go again.
+TEST(Split, IsUndoneByACollapse) {
+    HalfedgeMesh mesh = grid(3, 2);
+    const Triangles before = facesOf(mesh);
+    for (uint32_t e = 0; e < 20; ++e) {
+        const VertexId end = mesh.target(HalfedgeMesh::halfedge(EdgeId(e)));
+        const VertexId v = mesh.split(EdgeId(e));
+        ASSERT_NE(facesOf(mesh), before);
+        const HalfedgeId back = mesh.find(v, end);
+        ASSERT_TRUE(mesh.canCollapse(back));
+        mesh.collapse(back);
+        EXPECT_EQ(facesOf(mesh), before) << e;
+        EXPECT_THAT(connectivityViolations(mesh), IsEmpty());
+    }
+}
+
 // Any sequence of operations that are allowed keeps the invariants, and the region a disc (Euler).
 TEST(HalfedgeMesh, RandomLegalOperationsKeepTheInvariants) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -375,7 +433,15 @@ TEST(HalfedgeMesh, RandomLegalOperationsKeepTheInvariants) {
         for (int step = 0; step < 600 && mesh.faceCount() > 2; ++step) {
             const HalfedgeId h(uint32_t(random() % (2 * mesh.edgeCapacity())));
             if (!mesh.alive(HalfedgeMesh::edge(h))) continue;
-            if (random() % 3 == 0) {
+            const auto kind = random() % 8;
+            if (kind == 0) {
+                const VertexId v = mesh.split(HalfedgeMesh::edge(h));
+                EXPECT_EQ(mesh.target(HalfedgeMesh::halfedge(HalfedgeMesh::edge(h))), v);
+            } else if (kind == 1) {
+                const FaceId f(uint32_t(random() % mesh.faceCapacity()));
+                if (!mesh.alive(f)) continue;
+                EXPECT_EQ(valence(mesh, mesh.split(f).index), 3);
+            } else if (kind < 4) {
                 if (!mesh.canFlip(HalfedgeMesh::edge(h))) continue;
                 mesh.flip(HalfedgeMesh::edge(h));
             } else {
