@@ -12,9 +12,8 @@
 
 namespace tessera {
 
-// Stage "colours", variant "joint". `sharp` is the picture without the blur of its features
-// (virtual_sharp.h). Both in the opponent basis, as the result is.
-Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& sharp,
+// Stage "colours", variant "joint": `image` in the opponent basis, as the result is; `choices` by patch id.
+Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vector<SiteChoice>& choices,
                               const VectorizeSettings& settings, StageReport& report, Progress& progress);
 
 }  // namespace tessera
