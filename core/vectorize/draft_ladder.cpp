@@ -86,7 +86,29 @@ void fitColours(const Image& picture, PatchMesh& mesh) {
     });
 }
 
+// Feature edges become straight ones as all others are; what is certified stays so, as base triangles are
+// positive.
+void dropFeatures(CutMesh& cut) {
+    cut.curves.clear();
+    cut.curveOfEdge.clear();
+    const LatticePoint far{cut.width * kLatticePerPixel, cut.height * kLatticePerPixel};
+    for (size_t v = 0; v < cut.kinds.size(); ++v) {
+        const LatticePoint p = cut.positions[v];
+        const bool onSide = p.x == 0 || p.x == far.x, onEnd = p.y == 0 || p.y == far.y;
+        cut.kinds[v] = onSide && onEnd   ? VertexKind::Corner
+                       : onSide || onEnd ? VertexKind::Border
+                                         : VertexKind::Interior;
+    }
+}
+
 }  // namespace
+
+void DraftLadder::descend(CutMesh& cut, size_t collapses) const {
+    for (size_t i = 0; i < collapses; ++i) {
+        if (i == mWithFeatures) dropFeatures(cut);
+        apply(mCollapses[i], cut);
+    }
+}
 
 Result<std::shared_ptr<const DraftLadder>> DraftLadder::build(CutMesh initial,
                                                               std::shared_ptr<const Image> sharp,
@@ -94,17 +116,35 @@ Result<std::shared_ptr<const DraftLadder>> DraftLadder::build(CutMesh initial,
                                                               const VectorizeSettings& settings,
                                                               Progress& progress) {
     std::shared_ptr<DraftLadder> ladder(new DraftLadder);
-    CutMesh collapsed = initial;
-    Refiner refiner(collapsed, fit, settings);
-    refiner.recordTo(ladder->mCollapses);
+    auto& collapses = ladder->mCollapses;
     constexpr size_t kHandful = 8;
-    if (!refiner.collapseTo(kHandful, progress)) return stopped();
+    const auto collapse = [&](CutMesh& cut) {
+        Refiner refiner(cut, fit, settings, progress.stopToken());
+        refiner.recordTo(collapses);
+        return refiner.collapseTo(kHandful, progress);
+    };
+    CutMesh collapsed = initial;
+    if (!collapse(collapsed)) return stopped();
+    ladder->mWithFeatures = collapses.size();
+    if (const size_t stuck = collapsed.mesh.faceCount(); stuck > kHandful) {
+        // Features hold the last rungs before that at meshes that are worse than those without.
+        constexpr double kRoom = 1.3;
+        collapsed = initial;
+        size_t kept = 0;
+        while (kept < collapses.size() && double(collapsed.mesh.faceCount()) > kRoom * double(stuck))
+            apply(collapses[kept++], collapsed);
+        collapses.resize(kept);
+        ladder->mWithFeatures = kept;
+        dropFeatures(collapsed);
+        if (!collapse(collapsed)) return stopped();
+    }
     // The chains served to fit curves, which the collapses hold.
     initial.chains.clear();
     CutMesh counted = initial;
     ladder->mFaces.push_back(counted.mesh.faceCount());
-    for (const RecordedCollapse& collapse : ladder->mCollapses) {
-        apply(collapse, counted);
+    for (const RecordedCollapse& next : collapses) {
+        if (ladder->mFaces.size() == ladder->mWithFeatures + 1) dropFeatures(counted);
+        apply(next, counted);
         ladder->mFaces.push_back(counted.mesh.faceCount());
     }
     ladder->mInitial = std::move(initial);
@@ -114,7 +154,9 @@ Result<std::shared_ptr<const DraftLadder>> DraftLadder::build(CutMesh initial,
 
 PatchMesh DraftLadder::at(size_t patches) const {
     CutMesh cut = mInitial;
-    for (size_t i = 0; i < mCollapses.size() && mFaces[i] > patches; ++i) apply(mCollapses[i], cut);
+    const auto rung =
+        std::find_if(mFaces.begin(), mFaces.end() - 1, [&](size_t faces) { return faces <= patches; });
+    descend(cut, size_t(rung - mFaces.begin()));
     PatchMesh mesh = toPatchMesh(cut, mSharp->channels());
     fitColours(*mSharp, mesh);
     return mesh;

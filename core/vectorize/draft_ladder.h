@@ -18,7 +18,8 @@ namespace tessera {
 // Immutable; may be shared between threads.
 class DraftLadder {
   public:
-    // Collapses `initial`, which becomes the top rung, as far as its features allow. `sharp` is the picture
+    // Collapses `initial`, which becomes the top rung, to a handful of patches. Where its features would not
+    // let it, rungs below some have none. `sharp` is the picture
     // that it was made for, without the blur of features and in the opponent basis; `fit` is over it.
     // Stopped where progress says so.
     static Result<std::shared_ptr<const DraftLadder>> build(CutMesh initial,
@@ -37,11 +38,14 @@ class DraftLadder {
 
   private:
     DraftLadder() = default;
+    // `cut`, which is the initial mesh, after so many collapses.
+    void descend(CutMesh& cut, size_t collapses) const;
 
     CutMesh mInitial;
     std::shared_ptr<const Image> mSharp;
     std::vector<RecordedCollapse> mCollapses;
     std::vector<size_t> mFaces;  // before each collapse, and after the last
+    size_t mWithFeatures = 0;    // of the collapses; the others are of the mesh without
 };
 
 }  // namespace tessera

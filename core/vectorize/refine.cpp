@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -54,8 +55,13 @@ void apply(const RecordedCollapse& collapse, CutMesh& cut) {
     cut.curves[size_t(cut.curveOfEdge[HalfedgeMesh::edge(kept).index])] = curve;
 }
 
-Refiner::Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings)
-    : m(cut), mFit(fit), mTolerancePx(settings.featureTolerancePx), mError(cut.mesh.faceCapacity(), 0) {
+Refiner::Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings,
+                 std::stop_token stop)
+    : m(cut),
+      mFit(fit),
+      mTolerancePx(settings.featureTolerancePx),
+      mStop(std::move(stop)),
+      mError(cut.mesh.faceCapacity(), 0) {
     std::vector<FaceId> all;
     for (uint32_t f = 0; f < mError.size(); ++f)
         if (m.mesh.alive(FaceId(f))) all.push_back(FaceId(f));
@@ -72,7 +78,7 @@ double Refiner::totalError() const {
 void Refiner::updateFaces(const std::vector<FaceId>& faces) {
     mError.resize(m.mesh.faceCapacity(), 0);
     parallelFor(faces.size(), 16, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) updateFace(faces[i]);
+        for (size_t i = begin; i < end && !mStop.stop_requested(); ++i) updateFace(faces[i]);
     });
 }
 
@@ -376,7 +382,7 @@ double Refiner::flipCost(EdgeId e) const {
 size_t Refiner::flip() {
     std::vector<double> costs(m.mesh.edgeCapacity(), kNever);
     parallelFor(costs.size(), 32, [&](size_t begin, size_t end) {
-        for (size_t e = begin; e < end; ++e)
+        for (size_t e = begin; e < end && !mStop.stop_requested(); ++e)
             if (m.mesh.alive(EdgeId(uint32_t(e)))) costs[e] = flipCost(EdgeId(uint32_t(e)));
     });
     std::vector<uint32_t> order;
@@ -428,7 +434,7 @@ double Refiner::splitCost(EdgeId e) const {
 void Refiner::splitTo(size_t faces) {
     std::vector<double> costs(m.mesh.edgeCapacity(), kNever);
     parallelFor(costs.size(), 32, [&](size_t begin, size_t end) {
-        for (size_t e = begin; e < end; ++e)
+        for (size_t e = begin; e < end && !mStop.stop_requested(); ++e)
             if (m.mesh.alive(EdgeId(uint32_t(e)))) costs[e] = splitCost(EdgeId(uint32_t(e)));
     });
     std::vector<uint32_t> order;
@@ -531,14 +537,15 @@ size_t Refiner::move(double step) {
     std::vector<uint8_t> moved(colour.size(), 0);
     for (const auto& vertices : classes)
         parallelFor(vertices.size(), 4, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i) moved[vertices[i].index] = tryMove(vertices[i], step);
+            for (size_t i = begin; i < end && !mStop.stop_requested(); ++i)
+                moved[vertices[i].index] = tryMove(vertices[i], step);
         });
     return size_t(std::accumulate(moved.begin(), moved.end(), 0));
 }
 
 Result<CutMesh> refine(CutMesh cut, const PolynomialFit& fit, const VectorizeSettings& settings,
                        StageReport& report, std::string& shortfall, Progress& progress) {
-    Refiner refiner(cut, fit, settings);
+    Refiner refiner(cut, fit, settings, progress.stopToken());
     const auto wanted = size_t(settings.patches);
     refiner.flip();
     refiner.move(.15);

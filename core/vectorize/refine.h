@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -30,8 +31,10 @@ class Refiner {
   public:
     static constexpr double kMinAngleDegrees = 8;
 
-    // Keeps references. `fit` over the picture with hard features.
-    Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings);
+    // Keeps references. `fit` over the picture with hard features. Where `stop` is asked for, all that it
+    // does ends early, and the mesh is good for nothing.
+    Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings,
+            std::stop_token stop = {});
 
     size_t faceCount() const { return m.mesh.faceCount(); }
     // Sum over pixels and channels, as the polynomials have it.
@@ -93,6 +96,7 @@ class Refiner {
     CutMesh& m;
     const PolynomialFit& mFit;
     double mTolerancePx;
+    std::stop_token mStop;
     std::vector<double> mError;  // by face
     std::vector<RecordedCollapse>* mRecord = nullptr;
 };

@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/colour_basis.h"
+#include "core/vectorize/color_equations.h"
 
 namespace tessera {
 

@@ -6,7 +6,6 @@
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/mesh/patch_mesh.h"
-#include "core/vectorize/color_equations.h"
 #include "core/vectorize/settings.h"
 #include "core/vectorize/site_pursuit.h"
 

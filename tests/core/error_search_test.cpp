@@ -71,7 +71,7 @@ TEST(ErrorSearch, SaysWhyItCannot) {
     Progress progress;
     const auto tooFine = vectorizeToError(image, settings, meanError(1e-6, image), progress);
     ASSERT_TRUE(tooFine);
-    EXPECT_LE(settings.patches, image.planeSize() / kLeastPixelsPerPatch);
+    EXPECT_LE(settings.patches * kLeastPixelsPerPatch, double(image.planeSize()));
     EXPECT_THAT(tooFine->report.shortfall, HasSubstr("6 pixels"));
     const auto tooCoarse = vectorizeToError(image, settings, meanError(200, image), progress);
     ASSERT_TRUE(tooCoarse);
