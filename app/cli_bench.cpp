@@ -32,6 +32,7 @@ struct Arguments {
     std::vector<int> patches{1000, 2000, 4000};
     std::vector<std::string> methods = methodNames();
     std::vector<std::string> settings;
+    QualityArguments quality;  // of the methods that have it
     std::string jsonFile;
     int threads = 0;
     bool times4 = false;
@@ -97,6 +98,7 @@ Result<VectorizeSettings> settingsOf(const Arguments& arguments, const std::stri
     how.method = method;
     how.patches = patches;
     how.threads = arguments.threads;
+    if (method != "paper") how.quality = arguments.quality;
     how.settings = arguments.settings;
     return settingsFrom(how);
 }
@@ -317,6 +319,7 @@ void addBenchCommand(CLI::App& app, int& exitCode) {
     command->add_option("--set", arguments->settings, "A setting for all runs; may be given several times")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
+    addQualityOptions(*command, arguments->quality);
     command->add_option("--json", arguments->jsonFile, "Write every figure to this file")->type_name("FILE");
     command->add_flag("--times4", arguments->times4,
                       "Shrink by 4, vectorize, magnify by 4; beside bicubic and Lanczos");

@@ -29,59 +29,83 @@ struct Arguments {
     VectorizeArguments how;
 };
 
-// Writes the pictures one after another; keeps the first failure.
+// Writes the pictures one after another, as 1_NAME.png, 2_NAME.png, ...; keeps the first failure.
 class StagePictures {
   public:
     StagePictures(std::filesystem::path folder, bool quiet) : mFolder(std::move(folder)), mQuiet(quiet) {}
 
-    void write(const char* name, const Image& picture) {
+    void write(const std::string& name, const Image& picture) {
+        ++mNumber;
         if (!mResult) return;
-        const std::string path = (mFolder / name).string();
+        const std::string path = (mFolder / (std::to_string(mNumber) + "_" + name + ".png")).string();
         mResult = writeImage(picture, path);
         if (mResult && !mQuiet) std::printf("%s\n", path.c_str());
     }
+    // From 1 again.
+    void restart() { mNumber = 0; }
     const Result<void>& result() const { return mResult; }
 
   private:
     std::filesystem::path mFolder;
     bool mQuiet;
+    int mNumber = 0;
     Result<void> mResult;
 };
 
 // Fig. 2 (b) to (g), from what the stages hand on.
-StageObserver observer(StagePictures& pictures, const Image& image) {
+StageObserver paperObserver(StagePictures& pictures, const Image& image) {
     StageObserver observe;
     observe.features = [&](const std::vector<PixelChain>& chains) {
-        pictures.write("1_features.png",
-                       drawFeatures(chains, image.width(), image.height(), kFeatureScale, image));
+        pictures.write("features", drawFeatures(chains, image.width(), image.height(), kFeatureScale, image));
     };
     observe.initialMesh = [&](const ChannelMeshes& meshes) {
-        pictures.write("2_initial_mesh.png", drawInitialMesh(meshes, kGridWindowPx, kGridScale, image));
+        pictures.write("initial_mesh", drawInitialMesh(meshes, kGridWindowPx, kGridScale, image));
     };
     observe.baseDomain = [&](const BaseDomain& base) {
-        pictures.write("3_simplified_mesh.png", drawPatches(base.mesh, Outline::Curves, kPatchScale, image));
-        pictures.write("4_base_domain.png", drawPatches(base.mesh, Outline::Chords, kPatchScale, {}));
+        pictures.write("simplified_mesh", drawPatches(base.mesh, Outline::Curves, kPatchScale, image));
+        pictures.write("base_domain", drawPatches(base.mesh, Outline::Chords, kPatchScale, {}));
     };
     observe.initialCurves = [&](const PatchMesh& mesh) {
-        pictures.write("5_initial_patches.png", drawPatches(mesh, Outline::Curves, kPatchScale, image));
+        pictures.write("initial_patches", drawPatches(mesh, Outline::Curves, kPatchScale, image));
     };
     observe.curves = [&](const PatchMesh& mesh) {
-        pictures.write("6_optimized_patches.png", drawPatches(mesh, Outline::Curves, kPatchScale, image));
+        pictures.write("optimized_patches", drawPatches(mesh, Outline::Curves, kPatchScale, image));
     };
     return observe;
 }
 
-Result<void> drawStages(const Arguments& arguments, const VectorizeSettings& settings, Progress& progress) {
+StageObserver defaultObserver(StagePictures& pictures, const Image& image) {
+    StageObserver observe;
+    observe.network = [&](const FeatureNetwork& network) {
+        pictures.restart();  // a search for an error may run twice
+        pictures.write("features", drawFeatures(network, kPatchScale, image));
+    };
+    observe.cutMesh = [&](const CutMesh& cut) {
+        pictures.write("initial_mesh",
+                       drawPatches(toPatchMesh(cut, image.channels()), Outline::Curves, kPatchScale, image));
+    };
+    observe.refined = [&](const PatchMesh& mesh) {
+        pictures.write("refined_mesh", drawPatches(mesh, Outline::Curves, kPatchScale, image));
+    };
+    observe.curves = [&](const PatchMesh& mesh) {
+        pictures.write("curved_patches", drawPatches(mesh, Outline::Curves, kPatchScale, image));
+    };
+    return observe;
+}
+
+Result<void> drawStages(const Arguments& arguments, VectorizeSettings settings, Progress& progress) {
     const auto loaded = readImage(arguments.input);
     if (!loaded) return tl::unexpected(loaded.error());
     const Image& image = loaded->image;
     StagePictures pictures(arguments.folder, arguments.how.quiet);
-    const auto vectorized = vectorize(image, settings, progress, observer(pictures, image));
+    const auto vectorized = vectorizeAsAsked(
+        image, arguments.how, settings, progress,
+        settings.method == "paper" ? paperObserver(pictures, image) : defaultObserver(pictures, image));
     if (!vectorized) return tl::unexpected(vectorized.error());
     const auto rendering = rasterize(vectorized->mesh, wholePicture(vectorized->mesh, {1, 1}), {}, &progress);
     if (!rendering) return tl::unexpected(rendering.error());
-    pictures.write("7_reconstruction.png", *rendering);
-    pictures.write("8_residual_x4.png", residual(image, *rendering, kResidualGain));
+    pictures.write("reconstruction", *rendering);
+    pictures.write("residual_x4", residual(image, *rendering, kResidualGain));
     return pictures.result();
 }
 

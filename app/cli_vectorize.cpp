@@ -14,6 +14,8 @@
 #include "core/document/codec.h"
 #include "core/export/rasterize.h"
 #include "core/image/image_io.h"
+#include "core/vectorize/error_search.h"
+#include "core/vectorize/quality.h"
 #include "core/vectorize/vectorize.h"
 
 namespace tessera::cli {
@@ -37,10 +39,14 @@ Result<Document> asStored(Document document) {
         [](const std::vector<uint8_t>& bytes) { return decodeDocument(bytes); });
 }
 
-Result<void> addErrors(Document& document, const Image& image, Progress& progress) {
-    auto rendering = rasterize(document.mesh, wholePicture(document.mesh, {1, 1}), {.samples = 4}, &progress);
+Result<ImageDifference> errorsOf(const PatchMesh& mesh, const Image& image, Progress& progress) {
+    auto rendering = rasterize(mesh, wholePicture(mesh, {1, 1}), {.samples = 4}, &progress);
     if (!rendering) return tl::unexpected(rendering.error());
-    auto difference = compareImages(image, *rendering);
+    return compareImages(image, *rendering);
+}
+
+Result<void> addErrors(Document& document, const Image& image, Progress& progress) {
+    auto difference = errorsOf(document.mesh, image, progress);
     if (!difference) return tl::unexpected(difference.error());
     document.difference = *difference;
     return {};
@@ -63,14 +69,13 @@ struct Outcome {
     Document document;
     std::vector<uint8_t> bytes;
 };
-Result<Outcome> vectorizeFile(const Arguments& arguments, const VectorizeSettings& settings,
-                              Progress& progress) {
+Result<Outcome> vectorizeFile(const Arguments& arguments, VectorizeSettings settings, Progress& progress) {
     auto file = readFile(arguments.input);
     if (!file) return tl::unexpected(file.error());
     auto picture = readImage(*file, std::filesystem::path(arguments.input).filename().string());
     if (!picture) return tl::unexpected(picture.error());
     if (progress.stopRequested()) return stopped();
-    auto vectorized = vectorize(picture->image, settings, progress);
+    auto vectorized = vectorizeAsAsked(picture->image, arguments.how, settings, progress);
     if (!vectorized) return tl::unexpected(vectorized.error());
 
     Document document;
@@ -160,9 +165,31 @@ std::string stagesHelp() {
 
 }  // namespace
 
+void addQualityOptions(CLI::App& command, QualityArguments& arguments) {
+    command.add_option("--preset", arguments.preset, "draft, standard, fine or max (default: standard)")
+        ->type_name("NAME");
+    command.add_flag("--preview", arguments.preview, "The same as --preset draft");
+    command
+        .add_option("--features", arguments.features,
+                    "How many outlines are kept sharp: 0 none, 0.5 as usual, 1 twice as many")
+        ->type_name("0..1");
+}
+
 void addVectorizeOptions(CLI::App& command, VectorizeArguments& arguments) {
-    command.add_option("--method", arguments.method, "Choice of a variant for each stage (default: paper)");
-    command.add_option("--patches", arguments.patches, "How many patches to aim at")->capture_default_str();
+    command.add_option("--method", arguments.method,
+                       "default, or paper: the method of 2009, to compare with");
+    const std::string usual = std::to_string(VectorizeSettings{}.patches);
+    command.add_option("--patches", arguments.patches, "How many patches to aim at (default: " + usual + ")")
+        ->type_name("N");
+    command
+        .add_option("--detail", arguments.detail,
+                    "As many patches as suit the picture's size: 0 a few large ones, 1 for every texture")
+        ->type_name("0..1");
+    command
+        .add_option("--max-error", arguments.maxError,
+                    "As many patches as leave this mean error of 255 a channel; two or three runs")
+        ->type_name("E");
+    addQualityOptions(command, arguments.quality);
     command
         .add_option("--stage", arguments.stages, "Another variant for one stage; may be given several times")
         ->type_name("NAME=VARIANT")
@@ -176,16 +203,66 @@ void addVectorizeOptions(CLI::App& command, VectorizeArguments& arguments) {
     command.footer(stagesHelp());
 }
 
-Result<VectorizeSettings> settingsFrom(const VectorizeArguments& arguments) {
-    VectorizeSettings settings;
+namespace {
+
+// 0 to `most`, where it is given.
+Result<void> checkRange(const char* option, const std::optional<double>& value, double most) {
+    if (!value || (*value >= 0 && *value <= most)) return {};
+    char text[40];
+    std::snprintf(text, sizeof text, "%g", most);
+    return failure(ErrorCode::Usage, std::string(option) + " is a number from 0 to " + text);
+}
+
+Result<void> checkOptions(const VectorizeArguments& arguments) {
     if (arguments.threads < 0 || arguments.threads > 1024)
         return failure(ErrorCode::Usage, "--threads is a number from 0 to 1024");
+    if (int(bool(arguments.patches)) + int(bool(arguments.detail)) + int(bool(arguments.maxError)) > 1)
+        return failure(ErrorCode::Usage, "give one of --patches, --detail and --max-error, not several");
+    const QualityArguments& quality = arguments.quality;
+    if (quality.preview && !quality.preset.empty() && quality.preset != "draft")
+        return failure(ErrorCode::Usage,
+                       "--preview is --preset draft; leave it out for --preset " + quality.preset);
+    if (arguments.maxError && *arguments.maxError == 0)
+        return failure(ErrorCode::Usage, "--max-error is a number above 0");
+    for (const auto& checked :
+         {checkRange("--detail", arguments.detail, 1), checkRange("--features", quality.features, 1),
+          checkRange("--max-error", arguments.maxError, 255)})
+        if (!checked) return checked;
+    return {};
+}
+
+// The paper's method has no rounds, terms or budgets that they could change.
+Result<void> checkMethod(const VectorizeArguments& arguments, const VectorizeSettings& settings) {
+    if (settings.method != "paper") return {};
+    const QualityArguments& quality = arguments.quality;
+    const char* option = quality.preview           ? "--preview"
+                         : !quality.preset.empty() ? "--preset"
+                         : quality.features        ? "--features"
+                         : arguments.maxError      ? "--max-error"
+                                                   : nullptr;
+    if (!option) return {};
+    return failure(ErrorCode::Usage, std::string(option) + " is for --method default; leave out one of them");
+}
+
+}  // namespace
+
+Result<VectorizeSettings> settingsFrom(const VectorizeArguments& arguments) {
+    if (const auto checked = checkOptions(arguments); !checked) return tl::unexpected(checked.error());
+    VectorizeSettings settings;
     settings.threads = arguments.threads;
-    std::vector<std::pair<std::string, std::string>> pairs{{"patches", std::to_string(arguments.patches)}};
+    const QualityArguments& quality = arguments.quality;
+    if (quality.preview || !quality.preset.empty())
+        if (const auto set = applyPreset(settings, quality.preview ? "draft" : quality.preset); !set)
+            return tl::unexpected(set.error());
+    if (quality.features) setFeatureShare(settings, *quality.features);
+    std::vector<std::pair<std::string, std::string>> pairs;
+    if (arguments.patches) pairs.emplace_back("patches", std::to_string(*arguments.patches));
     if (!arguments.method.empty()) pairs.emplace_back("method", arguments.method);
     for (const std::string& text : arguments.settings) {
         auto pair = cutAtEquals(text, "--set");
         if (!pair) return tl::unexpected(pair.error());
+        if (pair->first == "patches" && (arguments.detail || arguments.maxError))
+            return failure(ErrorCode::Usage, "--set patches contradicts --detail and --max-error");
         pairs.push_back(std::move(*pair));
     }
     for (const std::string& text : arguments.stages) {
@@ -195,7 +272,21 @@ Result<VectorizeSettings> settingsFrom(const VectorizeArguments& arguments) {
     }
     for (const auto& [key, value] : pairs)
         if (const auto set = setKeyValue(settings, key, value); !set) return tl::unexpected(set.error());
+    if (const auto checked = checkMethod(arguments, settings); !checked)
+        return tl::unexpected(checked.error());
     return settings;
+}
+
+Result<VectorImage> vectorizeAsAsked(const Image& image, const VectorizeArguments& arguments,
+                                     VectorizeSettings& settings, Progress& progress,
+                                     const StageObserver& observe) {
+    if (arguments.detail)
+        settings.patches = patchesForDetail(*arguments.detail, image.width(), image.height());
+    if (!arguments.maxError) return vectorize(image, settings, progress, observe);
+    const auto meanError = [&](const PatchMesh& mesh, Progress& measuring) {
+        return errorsOf(mesh, image, measuring).map([](const ImageDifference& d) { return d.mae; });
+    };
+    return vectorizeToError(image, settings, {*arguments.maxError, meanError}, progress, observe);
 }
 
 void addVectorizeCommand(CLI::App& app, int& exitCode) {

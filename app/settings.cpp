@@ -4,6 +4,7 @@
 #include <QFileInfo>
 #include <QStandardPaths>
 
+#include "core/vectorize/quality.h"
 #include "core/vectorize/settings.h"
 
 namespace tessera {
@@ -58,6 +59,22 @@ int Settings::patches() const {
 
 void Settings::setPatches(int patches) {
     mSettings.setValue("vectorize/patches", patches);
+}
+
+QString Settings::quality() const {
+    return mSettings.value("vectorize/quality", "standard").toString();
+}
+
+void Settings::setQuality(const QString& preset) {
+    mSettings.setValue("vectorize/quality", preset);
+}
+
+double Settings::features() const {
+    return mSettings.value("vectorize/features", featureShare({})).toDouble();
+}
+
+void Settings::setFeatures(double share) {
+    mSettings.setValue("vectorize/features", share);
 }
 
 double Settings::edgeContrast() const {

@@ -28,6 +28,12 @@ class Settings {
 
     int patches() const;
     void setPatches(int patches);
+    // A preset of core/vectorize/quality.h.
+    QString quality() const;
+    void setQuality(const QString& preset);
+    // 0..1, as featureShare has it.
+    double features() const;
+    void setFeatures(double share);
     // The least contrast of a feature, as a share of the picture's strongest edge (the method's cannyHigh).
     double edgeContrast() const;
     void setEdgeContrast(double share);

@@ -163,10 +163,7 @@ void MainWindow::adoptSession() {
     (*mActions)[ActionId::ShowOriginal]->setChecked(false);
     mCanvas->setSession(session);
     connect(session, &DocumentSession::changed, this, &MainWindow::showSession);
-    if (session->hasMesh()) {
-        mPanel->setPatches(session->document().settings.patches);
-        mPanel->setEdgeContrast(session->document().settings.cannyHigh);
-    }
+    if (session->hasMesh()) mPanel->showSettings(session->document().settings);
     showSession();
     mCanvas->setFocus();
     const bool vectorize = !session->hasMesh() && (mVectorizeWhenOpen || mSettings.vectorizeOnOpen());

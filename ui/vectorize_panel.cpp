@@ -3,17 +3,20 @@
 
 #include <QAction>
 #include <QCheckBox>
+#include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QLocale>
 #include <QPushButton>
-#include <QSignalBlocker>
+#include <QSlider>
 #include <QSpinBox>
 #include <QVBoxLayout>
+#include <cmath>
 
 #include "app/document_session.h"
 #include "app/workspace.h"
+#include "core/vectorize/quality.h"
 #include "ui/action_table.h"
 #include "ui/status_bar.h"
 
@@ -24,6 +27,9 @@ namespace {
 constexpr int kMinPatches = 2;
 constexpr int kMaxPatches = 1'000'000;
 constexpr int kPanelWidthPx = 280;
+constexpr int kFieldHeightPx = 28;
+// Among the presets, what stands for the paper's method.
+const QString kPaper = "paper";
 
 QLabel* heading(const QString& text) {
     auto* label = new QLabel(text);
@@ -49,6 +55,15 @@ QVBoxLayout* makeColumn(QWidget* part) {
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(8);
     return column;
+}
+
+QHBoxLayout* labelled(const QString& text, QWidget* field) {
+    auto* label = new QLabel(text);
+    label->setBuddy(field);
+    auto* row = new QHBoxLayout;
+    row->addWidget(label);
+    row->addWidget(field, 1);
+    return row;
 }
 
 // A check box that is the action's other face.
@@ -89,30 +104,107 @@ VectorizePanel::VectorizePanel(Settings& settings, const ActionTable& actions, Q
 QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     auto* part = new QWidget;
     auto* column = makeColumn(part);
-    auto* row = new QHBoxLayout;
+    column->addLayout(makePatchesRow());
+    column->addWidget(dimLabel(tr("More patches keep more detail; fewer are easier to edit.")));
+    column->addLayout(makeQualityRow());
+    column->addWidget(mFeaturesPart = makeFeaturesPart());
+    column->addWidget(mEdgeContrastPart = makeEdgeContrastPart());
+    showFieldsOfMethod();
+    column->addSpacing(4);
+    column->addWidget(makeVectorizeButton(actions));
+    column->addSpacing(4);
+    column->addWidget(makeOption(tr("Vectorize photos when opened"), mSettings.vectorizeOnOpen(),
+                                 &Settings::setVectorizeOnOpen));
+    auto* embed =
+        makeOption(tr("Keep the photo in the saved file"), mSettings.embedPhoto(), &Settings::setEmbedPhoto);
+    embed->setToolTip(
+        tr("So that the original can be compared with wherever the file goes; the file is larger"));
+    column->addWidget(embed);
+    return part;
+}
+
+QLayout* VectorizePanel::makePatchesRow() {
     mPatches = new QSpinBox;
     mPatches->setObjectName("patches");
     mPatches->setRange(kMinPatches, kMaxPatches);
     mPatches->setGroupSeparatorShown(true);
     mPatches->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
     mPatches->setAlignment(Qt::AlignRight);
-    mPatches->setMinimumHeight(28);
+    mPatches->setMinimumHeight(kFieldHeightPx);
     mPatches->setFocusPolicy(
         Qt::StrongFocus);  // not by the wheel: it shall not change while one scrolls past
     mPatches->setValue(mSettings.patches());
     connect(mPatches, &QSpinBox::valueChanged, this, [this](int patches) { mSettings.setPatches(patches); });
     connect(mPatches, &QSpinBox::editingFinished, this, &VectorizePanel::editingDone);
-    auto* label = new QLabel(tr("&Patches"));
-    label->setBuddy(mPatches);
-    row->addWidget(label);
-    row->addWidget(mPatches, 1);
-    column->addLayout(row);
-    column->addWidget(dimLabel(tr("More patches keep more detail; fewer are easier to edit.")));
-    column->addLayout(makeEdgeContrastRow());
+    return labelled(tr("&Patches"), mPatches);
+}
+
+QLayout* VectorizePanel::makeQualityRow() {
+    mQuality = new QComboBox;
+    mQuality->setObjectName("quality");
+    mQuality->setMinimumHeight(kFieldHeightPx);
+    mQuality->setFocusPolicy(Qt::TabFocus);
+    mQuality->setPlaceholderText(tr("Custom"));
+    mQuality->addItem(tr("Draft"), "draft");
+    mQuality->addItem(tr("Standard"), "standard");
+    mQuality->addItem(tr("Fine"), "fine");
+    mQuality->addItem(tr("Max"), "max");
+    mQuality->insertSeparator(mQuality->count());
+    mQuality->addItem(tr("Paper of 2009"), kPaper);
+    mQuality->setToolTip(
+        tr("A draft takes seconds, the best some minutes. The last is the method of the "
+           "paper that Tessera began with, to compare with"));
+    mQuality->setCurrentIndex(mQuality->findData(mSettings.quality()));
+    connect(mQuality, &QComboBox::activated, this, [this] {
+        mSettings.setQuality(mQuality->currentData().toString());
+        emit editingDone();
+    });
+    connect(mQuality, &QComboBox::currentIndexChanged, this, &VectorizePanel::showFieldsOfMethod);
+    return labelled(tr("&Quality"), mQuality);
+}
+
+QWidget* VectorizePanel::makeFeaturesPart() {
+    mFeatures = new QSlider(Qt::Horizontal);
+    mFeatures->setObjectName("features");
+    mFeatures->setRange(0, 100);
+    mFeatures->setPageStep(10);
+    mFeatures->setMinimumHeight(kFieldHeightPx);
+    mFeatures->setFocusPolicy(Qt::TabFocus);
+    mFeatures->setValue(int(std::lround(100 * mSettings.features())));
+    connect(mFeatures, &QSlider::valueChanged, this,
+            [this](int percent) { mSettings.setFeatures(percent / 100.0); });
+    connect(mFeatures, &QSlider::sliderReleased, this, &VectorizePanel::editingDone);
+    auto* part = new QWidget;
+    auto* column = makeColumn(part);
+    column->addLayout(labelled(tr("&Outlines"), mFeatures));
+    column->addWidget(dimLabel(tr("How many outlines stay sharp when enlarged; to the left, none.")));
+    return part;
+}
+
+QWidget* VectorizePanel::makeEdgeContrastPart() {
+    mEdgeContrast = new QDoubleSpinBox;
+    mEdgeContrast->setObjectName("edgeContrast");
+    mEdgeContrast->setRange(1, 100);
+    mEdgeContrast->setDecimals(1);
+    mEdgeContrast->setSingleStep(2.5);
+    mEdgeContrast->setSuffix(tr(" %"));
+    mEdgeContrast->setAlignment(Qt::AlignRight);
+    mEdgeContrast->setMinimumHeight(kFieldHeightPx);
+    mEdgeContrast->setFocusPolicy(Qt::StrongFocus);
+    mEdgeContrast->setValue(100 * mSettings.edgeContrast());
+    connect(mEdgeContrast, &QDoubleSpinBox::valueChanged, this,
+            [this](double percent) { mSettings.setEdgeContrast(percent / 100); });
+    connect(mEdgeContrast, &QDoubleSpinBox::editingFinished, this, &VectorizePanel::editingDone);
+    auto* part = new QWidget;
+    auto* column = makeColumn(part);
+    column->addLayout(labelled(tr("&Edge contrast"), mEdgeContrast));
     column->addWidget(
         dimLabel(tr("Edges above this share of the strongest become features. Raise it where they hold too "
                     "many patches.")));
+    return part;
+}
 
+QPushButton* VectorizePanel::makeVectorizeButton(const ActionTable& actions) {
     QAction* vectorize = actions[ActionId::Vectorize];
     auto* button = new QPushButton(tr("Vectorize"));
     button->setObjectName("vectorizeButton");
@@ -123,45 +215,24 @@ QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     button->setEnabled(vectorize->isEnabled());
     connect(button, &QPushButton::clicked, vectorize, &QAction::trigger);
     connect(vectorize, &QAction::enabledChanged, button, &QWidget::setEnabled);
-    column->addSpacing(4);
-    column->addWidget(button);
-    column->addSpacing(4);
-
-    auto* onOpen = new QCheckBox(tr("Vectorize photos when opened"));
-    onOpen->setChecked(mSettings.vectorizeOnOpen());
-    onOpen->setFocusPolicy(Qt::TabFocus);
-    connect(onOpen, &QCheckBox::toggled, this, [this](bool on) { mSettings.setVectorizeOnOpen(on); });
-    column->addWidget(onOpen);
-    auto* embed = new QCheckBox(tr("Keep the photo in the saved file"));
-    embed->setChecked(mSettings.embedPhoto());
-    embed->setFocusPolicy(Qt::TabFocus);
-    embed->setToolTip(
-        tr("So that the original can be compared with wherever the file goes; the file is larger"));
-    connect(embed, &QCheckBox::toggled, this, [this](bool on) { mSettings.setEmbedPhoto(on); });
-    column->addWidget(embed);
-    return part;
+    return button;
 }
 
-QHBoxLayout* VectorizePanel::makeEdgeContrastRow() {
-    mEdgeContrast = new QDoubleSpinBox;
-    mEdgeContrast->setObjectName("edgeContrast");
-    mEdgeContrast->setRange(1, 100);
-    mEdgeContrast->setDecimals(1);
-    mEdgeContrast->setSingleStep(2.5);
-    mEdgeContrast->setSuffix(tr(" %"));
-    mEdgeContrast->setAlignment(Qt::AlignRight);
-    mEdgeContrast->setMinimumHeight(28);
-    mEdgeContrast->setFocusPolicy(Qt::StrongFocus);
-    setEdgeContrast(mSettings.edgeContrast());
-    connect(mEdgeContrast, &QDoubleSpinBox::valueChanged, this,
-            [this](double percent) { mSettings.setEdgeContrast(percent / 100); });
-    connect(mEdgeContrast, &QDoubleSpinBox::editingFinished, this, &VectorizePanel::editingDone);
-    auto* label = new QLabel(tr("&Edge contrast"));
-    label->setBuddy(mEdgeContrast);
-    auto* row = new QHBoxLayout;
-    row->addWidget(label);
-    row->addWidget(mEdgeContrast, 1);
-    return row;
+QCheckBox* VectorizePanel::makeOption(const QString& text, bool on, void (Settings::*set)(bool)) {
+    auto* box = new QCheckBox(text);
+    box->setChecked(on);
+    box->setFocusPolicy(Qt::TabFocus);
+    connect(box, &QCheckBox::toggled, this, [this, set](bool now) { (mSettings.*set)(now); });
+    return box;
+}
+
+bool VectorizePanel::paperChosen() const {
+    return mQuality->currentData() == kPaper;
+}
+
+void VectorizePanel::showFieldsOfMethod() {
+    mFeaturesPart->setVisible(!paperChosen());
+    mEdgeContrastPart->setVisible(paperChosen());
 }
 
 QWidget* VectorizePanel::makeShowPart(const ActionTable& actions) {
@@ -193,12 +264,27 @@ QWidget* VectorizePanel::makeResultPart() {
 
 VectorizeSettings VectorizePanel::settings(const DocumentSession* session) const {
     VectorizeSettings settings = session ? session->document().settings : VectorizeSettings{};
+    const QString method = paperChosen() ? "paper" : "default";
+    if (settings.method != method.toStdString()) {
+        // Variants of the other method's stages mean nothing in this one.
+        settings.method = method.toStdString();
+        settings.stageVariants.clear();
+    }
     settings.patches = mPatches->value();
-    // The lower threshold follows in the paper's proportion.
-    const VectorizeSettings usual;
-    const double high = mEdgeContrast->value() / 100;
-    settings.cannyLow = high * usual.cannyLow / usual.cannyHigh;
-    settings.cannyHigh = high;
+    if (paperChosen()) {
+        // The lower threshold follows in the paper's proportion.
+        const VectorizeSettings usual;
+        const double high = mEdgeContrast->value() / 100;
+        settings.cannyLow = high * usual.cannyLow / usual.cannyHigh;
+        settings.cannyHigh = high;
+        return settings;
+    }
+    setFeatureShare(settings, mFeatures->value() / 100.0);
+    // A document's own settings stay where they are no preset's and none has been chosen.
+    if (mQuality->currentIndex() >= 0) {
+        const auto applied = applyPreset(settings, mQuality->currentData().toString().toStdString());
+        Q_ASSERT(applied);
+    }
     return settings;
 }
 
@@ -206,8 +292,15 @@ void VectorizePanel::setPatches(int patches) {
     mPatches->setValue(patches);
 }
 
-void VectorizePanel::setEdgeContrast(double share) {
-    mEdgeContrast->setValue(100 * share);
+void VectorizePanel::showSettings(const VectorizeSettings& settings) {
+    setPatches(settings.patches);
+    if (settings.method == "paper") {
+        mQuality->setCurrentIndex(mQuality->findData(kPaper));
+        mEdgeContrast->setValue(100 * settings.cannyHigh);
+        return;
+    }
+    mQuality->setCurrentIndex(mQuality->findData(QString::fromStdString(presetOf(settings))));
+    mFeatures->setValue(int(std::lround(100 * featureShare(settings))));
 }
 
 void VectorizePanel::showSession(const DocumentSession* session, size_t features) {

@@ -7,11 +7,13 @@
 #include "core/vectorize/settings.h"
 
 class QCheckBox;
+class QComboBox;
 class QDoubleSpinBox;
 class QFormLayout;
 class QHBoxLayout;
 class QLabel;
 class QPushButton;
+class QSlider;
 class QSpinBox;
 class QToolButton;
 
@@ -26,10 +28,11 @@ class VectorizePanel : public QWidget {
   public:
     VectorizePanel(Settings& settings, const ActionTable& actions, QWidget* parent = nullptr);
 
-    // What the user asks for: the document's own settings with the panel's patch count and edge contrast.
+    // What the user asks for: the document's own settings with what the panel's fields say.
     VectorizeSettings settings(const DocumentSession* session) const;
     void setPatches(int patches);
-    void setEdgeContrast(double share);
+    // Makes the fields say what a document was made with.
+    void showSettings(const VectorizeSettings& settings);
     // Shows what the document holds; null where none is open.
     void showSession(const DocumentSession* session, size_t features);
 
@@ -39,12 +42,23 @@ class VectorizePanel : public QWidget {
 
   private:
     QWidget* makeVectorizePart(const ActionTable& actions);
-    QHBoxLayout* makeEdgeContrastRow();
+    QLayout* makePatchesRow();
+    QLayout* makeQualityRow();
+    QWidget* makeFeaturesPart();
+    QWidget* makeEdgeContrastPart();
+    QPushButton* makeVectorizeButton(const ActionTable& actions);
+    QCheckBox* makeOption(const QString& text, bool on, void (Settings::*set)(bool));
+    bool paperChosen() const;
+    void showFieldsOfMethod();
     QWidget* makeResultPart();
     QWidget* makeShowPart(const ActionTable& actions);
 
     Settings& mSettings;
     QSpinBox* mPatches = nullptr;
+    QComboBox* mQuality = nullptr;  // its data: a preset's name, or the paper's method; none is "custom"
+    QWidget* mFeaturesPart = nullptr;
+    QSlider* mFeatures = nullptr;  // in percent
+    QWidget* mEdgeContrastPart = nullptr;
     QDoubleSpinBox* mEdgeContrast = nullptr;  // in percent
     QWidget* mResult = nullptr;
     QFormLayout* mFigures = nullptr;

@@ -1,6 +1,7 @@
 // See vectorize_job.h.
 #include "app/jobs/vectorize_job.h"
 
+#include "app/jobs/render_job.h"
 #include "core/export/rasterize.h"
 
 namespace tessera {
@@ -12,9 +13,11 @@ Result<Vectorized> run(const Image& photo, const VectorizeSettings& settings, Pr
     if (!result) return tl::unexpected<Error>(result.error());
     Vectorized vectorized{.result = std::move(*result), .difference = {}};
     const PatchMesh& mesh = vectorized.result.mesh;
-    const Result<Image> rendering = rasterize(mesh, wholePicture(mesh, {1, 1}), {}, &progress);
+    // With as many samples as when it is saved: the file rounds colours as finely as this error deserves.
+    const Result<Image> rendering =
+        rasterize(mesh, wholePicture(mesh, {1, 1}), {.samples = kPictureSamples}, &progress);
     if (!rendering) return tl::unexpected<Error>(rendering.error());
-    if (const auto difference = compareImages(*rendering, photo)) vectorized.difference = *difference;
+    if (const auto difference = compareImages(photo, *rendering)) vectorized.difference = *difference;
     return vectorized;
 }
 

@@ -2,6 +2,7 @@
 #include "core/export/wireframe.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -37,6 +38,12 @@ class Drawing {
         std::vector<cv::Point> fixed;
         for (const glm::dvec2& p : points) fixed.push_back(toFixed(p));
         cv::polylines(mCanvas, fixed, false, colour * 255, thickness, cv::LINE_AA, kShift);
+    }
+    void curve(const BezierCurve& curve, const cv::Scalar& colour, int thickness) {
+        constexpr int kSteps = 16;
+        std::vector<glm::dvec2> points;
+        for (int i = 0; i <= kSteps; ++i) points.push_back(curve.at(double(i) / kSteps));
+        line(points, colour, thickness);
     }
     void dot(glm::dvec2 at, double radiusPx, const cv::Scalar& colour) {
         cv::circle(mCanvas, toFixed(at), int(radiusPx * (1 << kShift)), colour * 255, cv::FILLED, cv::LINE_AA,
@@ -76,6 +83,15 @@ Image drawFeatures(const std::vector<PixelChain>& chains, int width, int height,
     return drawing.image();
 }
 
+Image drawFeatures(const FeatureNetwork& network, int scale, const Image& background) {
+    Drawing drawing({0, 0}, {network.width, network.height}, scale, background);
+    for (const FeatureSegment& segment : network.segments)
+        drawing.curve(curveOf(network, segment), kFeatureColour, std::max(1, scale / 2));
+    for (const FeatureNode& node : network.nodes)
+        drawing.dot(toPixels(node.position), .6 * scale, kVertexColour);
+    return drawing.image();
+}
+
 Image drawInitialMesh(const ChannelMeshes& meshes, int windowPx, int scale, const Image& background) {
     const glm::ivec2 size(std::min(windowPx, meshes.width), std::min(windowPx, meshes.height));
     const glm::ivec2 origin((meshes.width - size.x) / 2, (meshes.height - size.y) / 2);
@@ -103,11 +119,12 @@ Image drawPatches(const PatchMesh& mesh, Outline outline, int scale, const Image
         mesh.forEachEdge([&](EdgeId e) {
             if (mesh.curve(e).feature != features) return;
             const BezierCurve curve = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e)));
-            const int steps = outline == Outline::Curves ? 16 : 1;
-            std::vector<glm::dvec2> points;
-            for (int i = 0; i <= steps; ++i) points.push_back(curve.at(double(i) / steps));
-            drawing.line(points, features ? kFeatureColour : kEdgeColour,
-                         features ? std::max(1, scale / 2) : 1);
+            const cv::Scalar& colour = features ? kFeatureColour : kEdgeColour;
+            const int thickness = features ? std::max(1, scale / 2) : 1;
+            if (outline == Outline::Curves)
+                drawing.curve(curve, colour, thickness);
+            else
+                drawing.line(std::array{curve.at(0), curve.at(1)}, colour, thickness);
         });
     mesh.forEachVertex(
         [&](VertexId v) { drawing.dot(toPixels(mesh.position(v)), .6 * scale, kVertexColour); });

@@ -3,6 +3,7 @@
 
 #include "core/image/image.h"
 #include "core/mesh/patch_mesh.h"
+#include "core/vectorize/feature_network.h"
 #include "core/vectorize/features.h"
 #include "core/vectorize/initial_mesh.h"
 
@@ -14,6 +15,8 @@ namespace tessera {
 
 Image drawFeatures(const std::vector<PixelChain>& chains, int width, int height, int scale,
                    const Image& background);
+// The curves of a network; its nodes are dots.
+Image drawFeatures(const FeatureNetwork& network, int scale, const Image& background);
 // The square window of `windowPx` around the picture's middle (or as much of it as there is).
 Image drawInitialMesh(const ChannelMeshes& meshes, int windowPx, int scale, const Image& background);
 // Patch boundaries as curves, or as the straight lines between their ends.

@@ -158,10 +158,12 @@ double wrongJump(const PatchMesh& mesh, const EdgeBlur& blur, const ColourOf& co
         colour(p, at, point, shown[k]);
     }
     const double left = 1 - blur.strength(e, .5);
-    double worst = 0;
-    for (int c = 0; c < mesh.channels(); ++c)
+    double worst = 0, largest = 1;  // colours beyond 1 are rounded as coarsely as they are large
+    for (int c = 0; c < mesh.channels(); ++c) {
         worst = std::max(worst, std::abs(shown[0][c] - shown[1][c] - left * (own[0][c] - own[1][c])));
-    return worst;
+        largest = std::max({largest, std::abs(own[0][c]), std::abs(own[1][c])});
+    }
+    return worst / largest;
 }
 
 // A side as a fine polyline, the same from both of its patches.

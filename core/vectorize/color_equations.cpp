@@ -18,20 +18,30 @@ using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajo
 // a squared error; and nothing drifts: a squared factor counts this much of a patch's pixels.
 constexpr double kBending = 1e-2, kRidge = 1e-6;
 
-// Parts of rows, as the patches find them: factors of `patch` for row `id`.
-struct Part {
-    uint32_t id;
-    uint32_t patch;
-    size_t offset;
-};
+// Parts of rows as a patch or a seam finds them, apart by whose factors they are, so that each can go as soon
+// as its patch has its rows.
 struct Parts {
-    std::vector<Part> parts;
-    std::vector<float> factors;
+    struct Chunk {
+        uint32_t patch;
+        std::vector<uint32_t> ids;   // of rows
+        std::vector<float> factors;  // for each of them
+    };
+    std::vector<Chunk> chunks;
 
+    // Good until the next call for the same patch.
     float* add(uint32_t id, uint32_t patch, size_t count) {
-        parts.push_back({id, patch, factors.size()});
-        factors.resize(factors.size() + count, 0.0F);
-        return factors.data() + parts.back().offset;
+        auto chunk =
+            std::find_if(chunks.begin(), chunks.end(), [&](const Chunk& c) { return c.patch == patch; });
+        if (chunk == chunks.end()) chunk = chunks.insert(chunk, {patch, {}, {}});
+        chunk->ids.push_back(id);
+        chunk->factors.resize(chunk->factors.size() + count, 0.0F);
+        return chunk->factors.data() + chunk->factors.size() - count;
+    }
+    void shrink() {
+        for (Chunk& chunk : chunks) {
+            chunk.ids.shrink_to_fit();
+            chunk.factors.shrink_to_fit();
+        }
     }
 };
 
@@ -59,7 +69,7 @@ class EquationBuilder {
 
     void addPixels(Progress& progress);
     void addSeams(const SeamWeights& weights, Progress& progress);
-    void finish();
+    void finish(const Progress& progress);
 
     ColorEquations m;
 
@@ -69,6 +79,9 @@ class EquationBuilder {
     std::vector<uint8_t> findShared(PatchId p, const PatchPixels& pixels);
     void addSide(HalfedgeId h, size_t samples, uint32_t firstRow, double sign, const SeamWeights& weights,
                  Parts& parts);
+
+    void gather(ColorEquations::Patch& patch, const std::vector<Parts::Chunk*>& chunks,
+                const std::vector<uint32_t>& number);
 
     const PatchMesh& mMesh;
     const Image& mPicture;
@@ -182,7 +195,9 @@ void EquationBuilder::addPixels(Progress& progress) {
         PatchPixels pixels;
         for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
             sampler.sample(i, pixels);
-            if (!pixels.pixels.empty()) addPatch(sampler.patches()[i], pixels, mParts[first + i]);
+            if (pixels.pixels.empty()) continue;
+            addPatch(sampler.patches()[i], pixels, mParts[first + i]);
+            mParts[first + i].shrink();
         }
     });
     m.pixelRows = uint32_t(mPicture.planeSize());
@@ -258,27 +273,52 @@ void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
             addSide(seams[i].h, seams[i].samples, seams[i].firstRow, 1, weights, mParts[first + i]);
             addSide(HalfedgeMesh::twin(seams[i].h), seams[i].samples, seams[i].firstRow, -1, weights,
                     mParts[first + i]);
+            mParts[first + i].shrink();
         }
     });
 }
 
-// Brings the parts together: rows numbered densely, each patch's factors side by side.
-void EquationBuilder::finish() {
+// One patch's rows side by side, in the order of their ids; its chunks are emptied.
+void EquationBuilder::gather(ColorEquations::Patch& patch, const std::vector<Parts::Chunk*>& chunks,
+                             const std::vector<uint32_t>& number) {
     struct Place {
         uint32_t id;
         const float* factors;
     };
-    std::vector<std::vector<Place>> places(m.patches.size());
+    std::vector<Place> places;
+    for (const Parts::Chunk* chunk : chunks)
+        for (size_t i = 0; i < chunk->ids.size(); ++i)
+            places.push_back({chunk->ids[i], chunk->factors.data() + i * size_t(patch.count)});
+    std::stable_sort(places.begin(), places.end(),
+                     [](const Place& a, const Place& b) { return a.id < b.id; });
+    for (const Place& place : places)
+        if (patch.rowIds.empty() || patch.rowIds.back() != number[place.id])
+            patch.rowIds.push_back(number[place.id]);
+    patch.rowIds.shrink_to_fit();
+    const auto count = size_t(patch.count);
+    patch.rows.assign(patch.rowIds.size() * count, 0);
+    float* row = patch.rows.data();
+    for (size_t i = 0; i < places.size(); ++i) {
+        if (i > 0 && places[i].id != places[i - 1].id) row += count;
+        for (size_t k = 0; k < count; ++k) row[k] += places[i].factors[k];
+    }
+    for (Parts::Chunk* chunk : chunks) *chunk = {};
+}
+
+// Brings the parts together: rows numbered densely, each patch's factors side by side.
+void EquationBuilder::finish(const Progress& progress) {
+    std::vector<std::vector<Parts::Chunk*>> chunks(m.patches.size());
     std::vector<uint32_t> number;  // by id
     uint32_t ids = 0;
-    for (const Parts& parts : mParts)
-        for (const Part& part : parts.parts) ids = std::max(ids, part.id + 1);
+    for (Parts& parts : mParts)
+        for (Parts::Chunk& chunk : parts.chunks) {
+            ids = std::max(ids, *std::max_element(chunk.ids.begin(), chunk.ids.end()) + 1);
+            chunks[chunk.patch].push_back(&chunk);
+        }
     number.assign(ids, 0);
     for (const Parts& parts : mParts)
-        for (const Part& part : parts.parts) {
-            number[part.id] = 1;
-            places[part.patch].push_back({part.id, parts.factors.data() + part.offset});
-        }
+        for (const Parts::Chunk& chunk : parts.chunks)
+            for (const uint32_t id : chunk.ids) number[id] = 1;
     uint32_t rows = 0;
     std::vector<uint32_t> pixelOfRow;
     for (uint32_t id = 0; id < ids; ++id) {
@@ -297,22 +337,8 @@ void EquationBuilder::finish() {
         uint32_t(std::lower_bound(pixelOfRow.begin(), pixelOfRow.end(), m.pixelRows) - pixelOfRow.begin());
 
     parallelFor(m.patches.size(), 16, [&](size_t begin, size_t end) {
-        for (size_t p = begin; p < end; ++p) {
-            auto& own = places[p];
-            std::stable_sort(own.begin(), own.end(),
-                             [](const Place& a, const Place& b) { return a.id < b.id; });
-            auto& patch = m.patches[p];
-            for (const Place& place : own)
-                if (patch.rowIds.empty() || patch.rowIds.back() != number[place.id])
-                    patch.rowIds.push_back(number[place.id]);
-            const auto count = size_t(patch.count);
-            patch.rows.assign(patch.rowIds.size() * count, 0);
-            float* row = patch.rows.data();
-            for (size_t i = 0; i < own.size(); ++i) {
-                if (i > 0 && own[i].id != own[i - 1].id) row += count;
-                for (size_t k = 0; k < count; ++k) row[k] += own[i].factors[k];
-            }
-        }
+        for (size_t p = begin; p < end && !progress.stopRequested(); ++p)
+            gather(m.patches[p], chunks[p], number);
     });
     m.firstEntry.assign(size_t(rows) + 1, 0);
     for (const auto& patch : m.patches)
@@ -333,7 +359,7 @@ ColorEquations buildEquations(const PatchMesh& mesh, const Image& picture,
     EquationBuilder builder(mesh, picture, choices, samplesPerSide);
     builder.addPixels(progress);
     builder.addSeams(weights, progress);
-    if (!progress.stopRequested()) builder.finish();
+    if (!progress.stopRequested()) builder.finish(progress);
     return std::move(builder.m);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -44,6 +45,15 @@ glm::dvec2 unit(glm::dvec2 v) {
 }
 
 }  // namespace
+
+void apply(const RecordedCollapse& collapse, CutMesh& cut) {
+    const VertexId onto = cut.mesh.target(collapse.halfedge);
+    cut.mesh.collapse(collapse.halfedge, collapse.kept);
+    if (!collapse.curve) return;
+    const CutCurve& curve = *collapse.curve;
+    const HalfedgeId kept = cut.mesh.find(onto, curve.from == onto ? curve.to : curve.from);
+    cut.curves[size_t(cut.curveOfEdge[HalfedgeMesh::edge(kept).index])] = curve;
+}
 
 Refiner::Refiner(CutMesh& cut, const PolynomialFit& fit, const VectorizeSettings& settings,
                  std::stop_token stop)
@@ -280,19 +290,16 @@ Refiner::Option Refiner::bestCollapse(VertexId u) const {
 
 void Refiner::collapse(HalfedgeId h, std::vector<FaceId>& changed, std::vector<VertexId>& dirty) {
     const VertexId u = m.mesh.origin(h), v = m.mesh.target(h);
-    std::array<bool, 2> keep{false, false};
-    std::optional<Merge> curve;
+    RecordedCollapse record{h, {false, false}, {}};
     if (m.kinds[u.index] == VertexKind::Feature) {
-        curve = merge(h);
+        const auto curve = merge(h);
         TESSERA_CHECK(curve);
-        keep = keptSides(h, *curve);
+        record.kept = keptSides(h, *curve);
+        record.curve = curve->curve;
     }
     m.mesh.forEachOutgoing(u, [&](HalfedgeId out) { dirty.push_back(m.mesh.target(out)); });
-    m.mesh.collapse(h, keep);
-    if (curve) {
-        const HalfedgeId kept = m.mesh.find(v, curve->beyond);
-        m.curves[size_t(m.curveOfEdge[HalfedgeMesh::edge(kept).index])] = curve->curve;
-    }
+    apply(record, m);
+    if (mRecord) mRecord->push_back(record);
     m.mesh.forEachOutgoing(v, [&](HalfedgeId out) {
         if (m.mesh.face(out).valid()) changed.push_back(m.mesh.face(out));
     });

@@ -17,12 +17,13 @@
 
 namespace tessera {
 
-// A half-edge collapse as it happened: enough to tell which vertex went where.
+// A half-edge collapse: enough to do it again on the same mesh.
 struct RecordedCollapse {
-    VertexId vertex;
-    VertexId onto;
-    double cost = 0;  // growth of the squared error
+    HalfedgeId halfedge;
+    std::array<bool, 2> kept;       // as HalfedgeMesh::collapse has it
+    std::optional<CutCurve> curve;  // the one that two become where a feature's vertex goes
 };
+void apply(const RecordedCollapse& collapse, CutMesh& cut);
 
 // Changes `cut` and keeps its invariants: faces stay certified, features stay on their chains within
 // settings.featureTolerancePx, no angle falls below kMinAngleDegrees that was not below it before.
@@ -42,6 +43,8 @@ class Refiner {
     // Collapses, cheapest first, until at most `faces` are left or nothing more can go. False where progress
     // says stop.
     bool collapseTo(size_t faces, Progress& progress);
+    // From now on, each collapse is appended to `collapses`.
+    void recordTo(std::vector<RecordedCollapse>& collapses) { mRecord = &collapses; }
     // Splits the edges that gain most until there are `faces` faces or no split gains.
     void splitTo(size_t faces);
     // One pass each; returns how many changed.
@@ -95,6 +98,7 @@ class Refiner {
     double mTolerancePx;
     std::stop_token mStop;
     std::vector<double> mError;  // by face
+    std::vector<RecordedCollapse>* mRecord = nullptr;
 };
 
 // Stage "simplify", variant "true-error": from the initial triangulation to settings.patches faces.

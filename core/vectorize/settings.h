@@ -13,7 +13,7 @@ namespace tessera {
 // A method is a choice of one variant for each stage; a setting changes a number of a stage. Defaults are the
 // paper's where it states them.
 struct VectorizeSettings {
-    std::string method = "paper";
+    std::string method = "default";
     int patches = 2000;  // wanted; at least 2
     int threads = 0;     // 0: one for each core. Never changes the result.
     // Variants that replace the method's own, by stage name: see vectorize.h.
@@ -44,8 +44,10 @@ struct VectorizeSettings {
 
     // The default method.
     double featureBudget = .38;  // feature edges for each patch wanted, at most
+    double initialSurplus = 2;   // faces of the initial mesh for each patch wanted
     int refineRounds = 4;        // of the true-error stage
     double termsPerPatch = 56;   // of the colour splines, over all channels, on the average
+    int seamPasses = 4;          // solutions from which the weight of seams is found; the first takes 1
     // Along edges that are no features the colours of both sides differ by so many levels (of 255) on the
     // mean, and by so many at the 95th percentile, at most.
     double seamMeanLevels = 3;

@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/colour_basis.h"
+#include "core/vectorize/color_equations.h"
 
 namespace tessera {
 
@@ -20,8 +21,6 @@ using Eigen::VectorXf;
 // A pixel's square is sampled at 2 x 2 points, as the renderer does at x1.
 constexpr int kSamplesPerSide = 2;
 
-// The weight of seams is found in so many solutions, each from the one before.
-constexpr int kSeamPasses = 4;
 // Of the residual of the patches by themselves: to find the weight, and in the end.
 constexpr double kFirstTolerance = 1.5e-3, kTolerance = 1e-3;
 constexpr double kLeastSeamWeight = .05, kMostSeamWeight = 50;
@@ -230,11 +229,8 @@ class SeamWeightSearch {
 
 }  // namespace
 
-Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& sharp,
+Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vector<SiteChoice>& choices,
                               const VectorizeSettings& settings, StageReport& report, Progress& progress) {
-    const SiteBudget budget{settings.termsPerPatch};
-    const std::vector<SiteChoice> choices = chooseSites(mesh, sharp, budget, progress);
-    if (!progress.step(.3)) return stopped();
     const SeamWeights seams{1, settings.seamGradientWeight};
     const ColorEquations equations = buildEquations(mesh, image, choices, seams, kSamplesPerSide, progress);
     if (!progress.step(.6)) return stopped();
@@ -244,16 +240,18 @@ Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& s
     int iterations = 0;
     double seamWeight = 1;
     SeamWeightSearch search;
-    for (int pass = 0; pass < kSeamPasses; ++pass) {
-        const bool last = pass + 1 == kSeamPasses;
+    const int passes = settings.seamPasses;
+    for (int pass = 0; pass < passes; ++pass) {
+        const bool last = pass + 1 == passes;
         for (int c = 0; c < mesh.channels(); ++c) {
             ChannelSystem system(equations, choices, weights, c);
             factors[size_t(c)] =
                 conjugateGradients(system, std::move(factors[size_t(c)]), last ? kTolerance : kFirstTolerance,
                                    iterations, progress);
-            if (!progress.step(.6 + .4 * (pass * mesh.channels() + c + 1) / (kSeamPasses * mesh.channels())))
+            if (!progress.step(.6 + .4 * (pass * mesh.channels() + c + 1) / (passes * mesh.channels())))
                 return stopped();
         }
+        if (last) break;
         seamWeight = search.next(seamWeight,
                                  seamExcess(equations, choices, factors, mesh.channels(), weights, settings));
         weights.tail(weights.size() - equations.pixelRows).setConstant(float(seamWeight));

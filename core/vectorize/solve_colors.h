@@ -6,15 +6,13 @@
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/mesh/patch_mesh.h"
-#include "core/vectorize/color_equations.h"
 #include "core/vectorize/settings.h"
 #include "core/vectorize/site_pursuit.h"
 
 namespace tessera {
 
-// Stage "colours", variant "joint". `sharp` is the picture without the blur of its features
-// (virtual_sharp.h). Both in the opponent basis, as the result is.
-Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const Image& sharp,
+// Stage "colours", variant "joint": `image` in the opponent basis, as the result is; `choices` by patch id.
+Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vector<SiteChoice>& choices,
                               const VectorizeSettings& settings, StageReport& report, Progress& progress);
 
 }  // namespace tessera

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <memory>
 
 #include "core/base/parallel.h"
 #include "core/mesh/colour_basis.h"
@@ -113,14 +114,12 @@ Image inOpponentBasis(Image image) {
     return image;
 }
 
-// The initial mesh has this many times the faces wanted.
-constexpr double kInitialSurplus = 2;
-
 // As many features as the mesh is to be cut along.
 Result<FeatureNetwork> findNetwork(const Image& image, const VectorizeSettings& settings,
                                    const std::map<std::string, std::string>& variants, StageReport& report,
                                    Progress& progress) {
-    if (variants.at("features") == "none") return FeatureNetwork{image.width(), image.height(), {}, {}, {}};
+    if (variants.at("features") == "none" || settings.featureBudget == 0)
+        return FeatureNetwork{image.width(), image.height(), {}, {}, {}};
     auto chains = detectSubpixelFeatures(image, settings, report, progress);
     if (!chains) return tl::unexpected(chains.error());
     auto selected = selectFeatures(std::move(*chains), settings.featureBudget * settings.patches);
@@ -142,31 +141,43 @@ Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& sett
     if (!network) return tl::unexpected(network.error());
     if (observe.network) observe.network(*network);
 
-    const Image sharp = virtualSharp(image, *network, progress.stopToken());
+    Image sharp = virtualSharp(image, *network, progress.stopToken());
     auto cut = run("initial-mesh", [&](StageReport& r) {
-        return buildCutMesh(sharp, *network, size_t(kInitialSurplus * settings.patches), r, progress);
+        return buildCutMesh(sharp, *network, size_t(settings.initialSurplus * settings.patches), r, progress);
     });
     if (!cut) return tl::unexpected(cut.error());
     if (observe.cutMesh) observe.cutMesh(*cut);
+    network = FeatureNetwork{};
 
-    const Image opponent = inOpponentBasis(sharp);
-    const PolynomialFit fit(opponent);
+    // Large pictures are most of the memory: each lives no longer than the stage that needs it.
+    sharp = inOpponentBasis(std::move(sharp));
+    auto fit = std::make_unique<const PolynomialFit>(sharp);
+    if (observe.ladder) {
+        auto ladder =
+            DraftLadder::build(*cut, std::make_shared<const Image>(sharp), *fit, settings, progress);
+        if (!ladder) return tl::unexpected(ladder.error());
+        observe.ladder(std::move(*ladder));
+    }
     auto refined = run("simplify", [&](StageReport& r) {
-        return refine(std::move(*cut), fit, settings, r, result.report.shortfall, progress);
+        return refine(std::move(*cut), *fit, settings, r, result.report.shortfall, progress);
     });
     if (!refined) return tl::unexpected(refined.error());
+    fit.reset();
     PatchMesh mesh = toPatchMesh(*refined, image.channels());
     if (observe.refined) observe.refined(mesh);
 
     auto curved = run("curves", [&](StageReport& r) -> Result<PatchMesh> {
         if (variants.at("curves") == "straight") return std::move(mesh);
-        return bendEdges(std::move(mesh), opponent, r, progress);
+        return bendEdges(std::move(mesh), sharp, r, progress);
     });
     if (!curved) return tl::unexpected(curved.error());
     if (observe.curves) observe.curves(*curved);
 
-    auto coloured = run("colours", [&](StageReport& r) {
-        return solveColors(std::move(*curved), inOpponentBasis(image), opponent, settings, r, progress);
+    auto coloured = run("colours", [&](StageReport& r) -> Result<PatchMesh> {
+        const auto sites = chooseSites(*curved, sharp, {settings.termsPerPatch}, progress);
+        sharp = Image();
+        if (!progress.step(.3)) return stopped();
+        return solveColors(std::move(*curved), inOpponentBasis(image), sites, settings, r, progress);
     });
     if (!coloured) return tl::unexpected(coloured.error());
     result.mesh = std::move(*coloured);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "core/image/image.h"
 #include "core/mesh/patch_mesh.h"
 #include "core/vectorize/cut_mesh.h"
+#include "core/vectorize/draft_ladder.h"
 #include "core/vectorize/feature_network.h"
 #include "core/vectorize/features.h"
 #include "core/vectorize/initial_mesh.h"
@@ -47,6 +49,9 @@ struct StageObserver {
     // Method "default".
     std::function<void(const FeatureNetwork&)> network;
     std::function<void(const CutMesh&)> cutMesh;
+    // Made only where this is not empty: it takes longer than a draft, and 12 to 16 bytes a pixel while it
+    // lives.
+    std::function<void(std::shared_ptr<const DraftLadder>)> ladder;
     std::function<void(const PatchMesh&)> refined;
     // Both.
     std::function<void(const PatchMesh&)> curves;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -128,6 +129,25 @@ TEST_F(Cli, RefusesWrongUsage) {
         "none");
     expectError(run({"vectorize", path("a.png"), "-o", path("b.tessera"), "--quiet", "--method", "magic"}), 2,
                 "magic");
+    const auto refuses = [&](const std::vector<std::string>& options, const std::string& part) {
+        for (const char* command : {"vectorize", "stages"}) {
+            std::vector<std::string> arguments{command, path("a.png"), "-o", path("b"), "--quiet"};
+            arguments.insert(arguments.end(), options.begin(), options.end());
+            expectError(run(arguments), 2, part);
+        }
+    };
+    refuses({"--patches", "9", "--detail", ".5"}, "one of --patches, --detail and --max-error");
+    refuses({"--max-error", "2", "--detail", ".5"}, "one of --patches, --detail and --max-error");
+    refuses({"--detail", "1.5"}, "--detail is a number from 0 to 1");
+    refuses({"--detail", ".5", "--set", "patches=9"}, "--set patches");
+    refuses({"--features", "-1"}, "--features is a number from 0 to 1");
+    refuses({"--features", "nan"}, "--features is a number from 0 to 1");
+    refuses({"--max-error", "0"}, "above 0");
+    refuses({"--max-error", "300"}, "255");
+    refuses({"--preset", "best"}, "draft, standard, fine or max");
+    refuses({"--preset", "max", "--preview"}, "--preview is --preset draft");
+    for (const char* option : {"--preset=fine", "--preview", "--features=1", "--max-error=3"})
+        refuses({"--method", "paper", option}, "is for --method default");
     expectError(run({"render", path("a.tessera"), "-o", path("b.gif")}), 2, "gif");
     expectError(run({"render", path("a.tessera"), "-o", path("b.png"), "--samples", "3"}), 2, "samples");
     for (const char* sharpen : {"4.1", "-1", "nan", "soft"})
@@ -221,7 +241,7 @@ TEST_F(Cli, ShowsWhatIsInADocument) {
     EXPECT_EQ(j["coefficients"], 24 * 57);
     EXPECT_EQ(j["errors"]["psnr"], 31.25);
     EXPECT_EQ(j["bytes"], fs::file_size(path("a.tessera")));
-    EXPECT_EQ(j["settings"]["method"], "paper");
+    EXPECT_EQ(j["settings"]["method"], "default");
     EXPECT_TRUE(j["chunks"].contains("COLR"));
     EXPECT_THAT(run({"info", path("a.tessera")}).out, HasSubstr("patches"));
 }
@@ -271,6 +291,68 @@ TEST_F(Cli, VectorizesAPicture) {
     EXPECT_EQ(quiet.exitCode, 0);
     EXPECT_EQ(quiet.out + quiet.err, "");
     EXPECT_EQ(json::parse(run({"info", path("b.tessera"), "--json"}).out)["source_embedded"], false);
+}
+
+TEST_F(Cli, TakesDetailPresetsAndFeatures) {
+    savePicture("a.png", 60, 50, .3f, 40);
+    const auto info = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"vectorize", path("a.png"), "-o", path("a.tessera"), "--quiet"});
+        const Outcome outcome = run(options);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        return json::parse(run({"info", path("a.tessera"), "--json"}).out)["settings"];
+    };
+    const json detailed = info({"--detail", "1"});
+    EXPECT_EQ(detailed["patches"], "100");
+    EXPECT_EQ(detailed["method"], "default");
+    EXPECT_EQ(detailed["refineRounds"], "4");
+    for (const json& draft :
+         {info({"--preview", "--patches", "30"}), info({"--preset", "draft", "--patches", "30"})}) {
+        EXPECT_EQ(draft["patches"], "30");
+        EXPECT_EQ(draft["refineRounds"], "0");
+        EXPECT_EQ(draft["stage.curves"], "straight");
+    }
+    EXPECT_EQ(info({"--preset", "max", "--set", "termsPerPatch=50"})["termsPerPatch"], "50");
+    EXPECT_EQ(info({"--features", "0"})["featureBudget"], "0");
+    EXPECT_EQ(info({"--method", "paper", "--detail", ".9"})["method"], "paper");
+}
+
+TEST_F(Cli, FindsThePatchesForAnError) {
+    Image image(96, 72, 3);
+    for (int c = 0; c < 3; ++c)
+        for (int y = 0; y < 72; ++y)
+            for (int x = 0; x < 96; ++x)
+                image.at(x, y, c) =
+                    .5F + .3F * std::sin(.3F * float(x) + float(c)) * std::cos(.004F * float(y * y));
+    ASSERT_TRUE(writeImage(image, path("a.png")));
+    const Outcome outcome =
+        run({"vectorize", path("a.png"), "-o", path("a.tessera"), "--max-error", "2", "--json", "--quiet"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const json j = json::parse(outcome.out);
+    EXPECT_EQ(j["stages"][0]["stage"], "search");
+    EXPECT_EQ(j["stages"][0]["figures"]["wanted error"], 2);
+    const double mae = j["errors"]["mae"];
+    EXPECT_EQ(j["shortfall"] == "", std::abs(mae - 2) <= .1) << j["shortfall"];
+}
+
+TEST_F(Cli, DrawsTheStagesOfBothMethods) {
+    savePicture("a.png", 40, 32, .3f, 40);
+    const auto drawn = [&](const std::string& method) {
+        const Outcome outcome = run(
+            {"stages", path("a.png"), "-o", path(method), "--method", method, "--patches", "40", "--quiet"});
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(path(method)))
+            names.push_back(entry.path().filename().string());
+        std::sort(names.begin(), names.end());
+        return names;
+    };
+    EXPECT_EQ(drawn("default"), (std::vector<std::string>{"1_features.png", "2_initial_mesh.png",
+                                                          "3_refined_mesh.png", "4_curved_patches.png",
+                                                          "5_reconstruction.png", "6_residual_x4.png"}));
+    EXPECT_EQ(drawn("paper"), (std::vector<std::string>{"1_features.png", "2_initial_mesh.png",
+                                                        "3_simplified_mesh.png", "4_base_domain.png",
+                                                        "5_initial_patches.png", "6_optimized_patches.png",
+                                                        "7_reconstruction.png", "8_residual_x4.png"}));
 }
 
 // The first photograph of the test images, or none.

@@ -41,7 +41,8 @@ class FittedDocument : public ::testing::Test {
         StageReport report;
         image = texture(128, 96);
         Document d;
-        auto mesh = solveColors(testing::gridMesh(128, 96, 8, 6), image, {}, report, progress);
+        const PatchMesh grid = testing::gridMesh(128, 96, 8, 6);
+        auto mesh = solveColors(grid, image, chooseSites(grid, image, {}, progress), {}, report, progress);
         ASSERT_TRUE(mesh);
         d.mesh = *mesh;
         d.difference.emplace();

@@ -16,6 +16,8 @@ TEST(Settings, ComeBackFromTheirText) {
     settings.cannyLow = .1 + .2;  // no short decimal
     settings.colourWeight = 1e-7;
     settings.samplesPerSide = 7;
+    settings.seamPasses = 2;
+    settings.initialSurplus = 1.25;
     settings.stageVariants = {{"curves", "straight"}, {"colours", "sampled-nowarp"}};
     VectorizeSettings back;
     for (const auto& [key, value] : toKeyValues(settings)) {
@@ -28,7 +30,7 @@ TEST(Settings, ComeBackFromTheirText) {
 TEST(Settings, ListEachNumberOfTheStruct) {
     // A setting that is added to the struct must be added to the text: two of them differ in every key but
     // the stages'.
-    EXPECT_EQ(toKeyValues({}).size(), 15u);
+    EXPECT_EQ(toKeyValues({}).size(), 23u);
     for (const auto& [key, value] : toKeyValues({})) EXPECT_NE(key, "threads");
 }
 

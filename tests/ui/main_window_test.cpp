@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QDragEnterEvent>
 #include <QDropEvent>
 #include <QFile>
@@ -11,6 +13,7 @@
 #include <QMimeData>
 #include <QPainter>
 #include <QPushButton>
+#include <QSlider>
 #include <QTemporaryDir>
 #include <QTest>
 #include <QTimer>
@@ -19,6 +22,7 @@
 
 #include "app/settings.h"
 #include "core/export/rasterize.h"
+#include "core/vectorize/quality.h"
 #include "ui/action_table.h"
 #include "ui/application.h"
 #include "ui/canvas_widget.h"
@@ -126,6 +130,61 @@ double difference(const QImage& a, const QImage& b) {
                 std::abs(p.red() - q.red()) + std::abs(p.green() - q.green()) + std::abs(p.blue() - q.blue());
         }
     return sum / (3. * a.width() * a.height());
+}
+
+TEST_F(MainWindowTest, QualityChoosesThePresetAndTheMethodWithItsFields) {
+    openPhoto();
+    auto* quality = window->panel().findChild<QComboBox*>("quality");
+    auto* features = window->panel().findChild<QSlider*>("features");
+    auto* contrast = window->panel().findChild<QDoubleSpinBox*>("edgeContrast");
+    ASSERT_TRUE(quality && features && contrast);
+    EXPECT_TRUE(features->isVisible());
+    EXPECT_FALSE(contrast->isVisible());
+    const auto asked = [&] { return window->panel().settings(session()); };
+    EXPECT_EQ(asked().method, "default");
+    EXPECT_EQ(presetOf(asked()), "standard");
+    EXPECT_EQ(featureShare(asked()), .5);
+    quality->setFocus();
+    QTest::keyClick(quality, Qt::Key_Up);
+    EXPECT_EQ(presetOf(asked()), "draft");
+    features->setFocus();
+    QTest::keyClick(features, Qt::Key_Home);
+    EXPECT_EQ(asked().featureBudget, 0);
+    vectorize();
+    EXPECT_EQ(presetOf(session()->document().settings), "draft");
+    EXPECT_EQ(session()->document().settings.featureBudget, 0);
+    QTest::keyClick(quality, Qt::Key_End);
+    EXPECT_EQ(asked().method, "paper");
+    EXPECT_TRUE(asked().stageVariants.empty());
+    EXPECT_FALSE(features->isVisible());
+    EXPECT_TRUE(contrast->isVisible());
+    // What the next window begins with.
+    QTest::keyClick(quality, Qt::Key_Home);
+    EXPECT_EQ(Settings().quality(), "draft");
+    EXPECT_EQ(Settings().features(), 0);
+    QTest::keyClick(quality, Qt::Key_Down);
+    features->setValue(50);
+}
+
+// A document that was made with numbers of its own keeps them until a preset is chosen.
+TEST_F(MainWindowTest, ADocumentsOwnSettingsStay) {
+    openPhoto();
+    VectorizeSettings own;
+    own.refineRounds = 2;
+    own.patches = kPatches;
+    auto* quality = window->panel().findChild<QComboBox*>("quality");
+    window->panel().showSettings(own);
+    EXPECT_EQ(quality->currentIndex(), -1);
+    workspace().vectorize(own);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(window->panel().settings(session()), own);
+    quality->setFocus();
+    QTest::keyClick(quality, Qt::Key_End);
+    EXPECT_EQ(window->panel().settings(session()).method, "paper");
+    QTest::keyClick(quality, Qt::Key_Home);
+    EXPECT_EQ(presetOf(window->panel().settings(session())), "draft");
+    quality->setCurrentIndex(1);
+    Settings().setQuality("standard");
 }
 
 TEST_F(MainWindowTest, ShowsThePhotoPixelForPixelAt100Percent) {
