@@ -51,7 +51,7 @@ struct VectorizeSettings {
     // Along edges that are no features the colours of both sides differ by so many levels (of 255) on the
     // mean, and by so many at the 95th percentile, at most.
     double seamMeanLevels = 3;
-    double seamHighLevels = 9.1;
+    double seamHighLevels = 8.9;
     double seamGradientWeight = .005;  // of a squared difference a pixel off, against that on the edge
 
     bool operator==(const VectorizeSettings&) const = default;
