@@ -144,35 +144,97 @@ std::vector<LatticePoint> borderPoints(int width, int height, double points) {
     return result;
 }
 
-// Where a curve leaves a patch beside it without a certificate it is pulled toward its chord, in the end onto
-// it, which always has one.
+bool curved(const CutMesh& cut, HalfedgeId h) {
+    return cut.curve(HalfedgeMesh::edge(h)) != nullptr;
+}
+
+// Whether the face's patch, with its curved sides, has a certified interior point.
+bool sound(const CutMesh& cut, FaceId f) {
+    LatticeTriangle t;
+    bool straight = true;
+    size_t s = 0;
+    for (const HalfedgeId h : cut.mesh.sides(f)) {
+        const VertexId a = cut.mesh.origin(h), b = cut.mesh.target(h);
+        const LatticePoint pa = cut.positions[a.index], pb = cut.positions[b.index];
+        const auto inner = straightControlPoints(pa, pb);
+        std::array<LatticePoint, 4> side{pa, inner[0], inner[1], pb};
+        if (const CutCurve* c = cut.curve(HalfedgeMesh::edge(h))) {
+            side = c->controlPoints(a, cut.positions);
+            straight = false;
+        }
+        for (size_t i = 0; i < 3; ++i) t.p[3 * s + i] = side[i];
+        ++s;
+    }
+    if (straight) return true;
+    t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
+    return certifiedInterior(t).has_value();
+}
+
+// Puts a node into the middle of a segment, each half of its points a cubic of its own. False, with nothing
+// changed, where there are too few points between.
+bool halve(FeatureNetwork& network, size_t index, double tolerancePx) {
+    constexpr uint32_t kLeastSteps = 4;
+    FeatureSegment& whole = network.segments[index];
+    FeatureChain& chain = network.chains[whole.chain];
+    const auto n = uint32_t(chain.points.size());
+    const uint32_t steps = (whole.last + n - whole.first) % n;
+    if (steps < kLeastSteps) return false;
+    const uint32_t middle = (whole.first + steps / 2) % n;
+    const glm::dvec2 before = chain.points[middle].position;
+    const LatticePoint p = toLattice(before);
+    chain.points[middle].position = toPixels(p);
+    const auto first = fitChainPart(chain, whole.first, middle, tolerancePx);
+    const auto second = fitChainPart(chain, middle, whole.last, tolerancePx);
+    if (!first || !second) {
+        chain.points[middle].position = before;
+        return false;
+    }
+    const auto inner = [](const BezierCurve& c) {
+        return std::array<LatticePoint, 2>{toLattice(c.p[1]), toLattice(c.p[2])};
+    };
+    const auto node = uint32_t(network.nodes.size());
+    const float sigma = .5f * (whole.sigma[0] + whole.sigma[1]);
+    network.nodes.push_back({p, FeatureNodeKind::Smooth});
+    const FeatureSegment rest{
+        node, whole.to, whole.chain, middle, whole.last, inner(*second), {sigma, whole.sigma[1]}};
+    whole = {whole.from, node, whole.chain, whole.first, middle, inner(*first), {whole.sigma[0], sigma}};
+    network.segments.push_back(rest);
+    return true;
+}
+
+// Halves the segments that leave a patch beside them without a certificate: halves lie four times as close to
+// their chords, between which the triangulation puts its faces. False where there is nothing to halve.
+bool halveUnsound(const CutMesh& cut, FeatureNetwork& network, double tolerancePx) {
+    std::vector<uint32_t> bad;
+    for (uint32_t f = 0; f < cut.mesh.faceCapacity(); ++f) {
+        if (sound(cut, FaceId(f))) continue;
+        for (const HalfedgeId h : cut.mesh.sides(FaceId(f)))
+            if (curved(cut, h)) bad.push_back(uint32_t(cut.curveOfEdge[HalfedgeMesh::edge(h).index]));
+    }
+    std::sort(bad.begin(), bad.end());
+    bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+    bool any = false;
+    for (const uint32_t i : bad) {
+        const CutCurve& c = cut.curves[i];
+        const auto segment = std::find_if(
+            network.segments.begin(), network.segments.end(),
+            [&](const auto& s) { return s.chain == c.chain && s.first == c.first && s.last == c.last; });
+        any = halve(network, size_t(segment - network.segments.begin()), tolerancePx) || any;
+    }
+    return any;
+}
+
+// Where a curve still leaves a patch beside it without a certificate it is pulled toward its chord, in the
+// end onto it, which always has one.
 size_t straighten(CutMesh& cut) {
     constexpr int kPulls = 4;
     std::vector<int> pulls(cut.curves.size(), 0);
     while (true) {
         std::vector<uint32_t> bad;
         for (uint32_t f = 0; f < cut.mesh.faceCapacity(); ++f) {
-            LatticeTriangle t;
-            bool curved = false;
-            size_t s = 0;
-            for (const HalfedgeId h : cut.mesh.sides(FaceId(f))) {
-                const VertexId a = cut.mesh.origin(h), b = cut.mesh.target(h);
-                const LatticePoint pa = cut.positions[a.index], pb = cut.positions[b.index];
-                const auto inner = straightControlPoints(pa, pb);
-                std::array<LatticePoint, 4> side{pa, inner[0], inner[1], pb};
-                if (const CutCurve* c = cut.curve(HalfedgeMesh::edge(h))) {
-                    side = c->controlPoints(a, cut.positions);
-                    curved = true;
-                }
-                for (size_t i = 0; i < 3; ++i) t.p[3 * s + i] = side[i];
-                ++s;
-            }
-            if (!curved) continue;
-            t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
-            if (certifiedInterior(t)) continue;
+            if (sound(cut, FaceId(f))) continue;
             for (const HalfedgeId h : cut.mesh.sides(FaceId(f)))
-                if (cut.curve(HalfedgeMesh::edge(h)))
-                    bad.push_back(uint32_t(cut.curveOfEdge[HalfedgeMesh::edge(h).index]));
+                if (curved(cut, h)) bad.push_back(uint32_t(cut.curveOfEdge[HalfedgeMesh::edge(h).index]));
         }
         std::sort(bad.begin(), bad.end());
         bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
@@ -194,27 +256,18 @@ VertexKind kindOf(FeatureNodeKind kind) {
     return kind == FeatureNodeKind::Smooth ? VertexKind::Feature : VertexKind::FeatureEnd;
 }
 
-}  // namespace
-
-std::array<LatticePoint, 4> CutCurve::controlPoints(VertexId a,
-                                                    const std::vector<LatticePoint>& positions) const {
-    if (a == from) return {positions[from.index], inner[0], inner[1], positions[to.index]};
-    return {positions[to.index], inner[1], inner[0], positions[from.index]};
-}
-
-Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, size_t faces,
-                             StageReport& report, Progress& progress) {
-    const int width = sharp.width(), height = sharp.height();
-    const LatticePoint extent{width * kLatticePerPixel, height * kLatticePerPixel};
+// The constrained triangulation, with curves as they are; `refused` counts segments left out.
+CutMesh triangulate(const FeatureNetwork& network, const std::vector<LatticePoint>& points, size_t& refused,
+                    Progress& progress) {
     CutMesh cut;
-    cut.width = width;
-    cut.height = height;
+    cut.width = network.width;
+    cut.height = network.height;
     cut.chains = network.chains;
-
+    const LatticePoint extent{cut.width * kLatticePerPixel, cut.height * kLatticePerPixel};
     Delaunay delaunay(extent);
     std::vector<VertexId> vertexOfNode;
     for (const FeatureNode& node : network.nodes) vertexOfNode.push_back(delaunay.insert(node.position));
-    size_t refused = 0;
+    refused = 0;
     for (const FeatureSegment& s : network.segments) {
         const VertexId a = vertexOfNode[s.from], b = vertexOfNode[s.to];
         if (a.valid() && b.valid() && a != b && delaunay.constrain(a, b).valid())
@@ -222,17 +275,10 @@ Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, 
         else
             ++refused;
     }
-    if (!progress.step(.3)) return stopped();
-    const double points = std::max(0.0, double(faces) / 2 - double(network.nodes.size()));
-    for (const LatticePoint p : borderPoints(width, height, double(faces) / 2)) delaunay.insert(p);
-    size_t count = 0;
-    for (const LatticePoint p :
-         diffuse(richness(sharp), keptFree(network, width, height), width, height, points)) {
-        if (++count % 1024 == 0 && !progress.step(.3 + .6 * double(count) / std::max(1.0, points)))
-            return stopped();
-        delaunay.insert(p);
+    for (size_t i = 0; i < points.size(); ++i) {
+        if (i % 1024 == 0 && !progress.step(.3 + .6 * double(i) / double(points.size()))) return cut;
+        delaunay.insert(points[i]);
     }
-
     cut.mesh = delaunay.mesh();
     cut.positions = delaunay.positions();
     for (const LatticePoint p : cut.positions) {
@@ -246,6 +292,35 @@ Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, 
     for (size_t i = 0; i < cut.curves.size(); ++i)
         cut.curveOfEdge[HalfedgeMesh::edge(cut.mesh.find(cut.curves[i].from, cut.curves[i].to)).index] =
             int32_t(i);
+    return cut;
+}
+
+}  // namespace
+
+std::array<LatticePoint, 4> CutCurve::controlPoints(VertexId a,
+                                                    const std::vector<LatticePoint>& positions) const {
+    if (a == from) return {positions[from.index], inner[0], inner[1], positions[to.index]};
+    return {positions[to.index], inner[1], inner[0], positions[from.index]};
+}
+
+Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, size_t faces,
+                             const VectorizeSettings& settings, StageReport& report, Progress& progress) {
+    constexpr int kHalvings = 4;
+    const int width = sharp.width(), height = sharp.height();
+    FeatureNetwork halved = network;
+    halved.width = width;
+    halved.height = height;
+    const double wanted = std::max(0.0, double(faces) / 2 - double(network.nodes.size()));
+    std::vector<LatticePoint> points = borderPoints(width, height, double(faces) / 2);
+    const auto inside = diffuse(richness(sharp), keptFree(network, width, height), width, height, wanted);
+    points.insert(points.end(), inside.begin(), inside.end());
+    size_t refused = 0;
+    CutMesh cut;
+    for (int round = 0; round <= kHalvings; ++round) {
+        cut = triangulate(halved, points, refused, progress);
+        if (!progress.step(.9)) return stopped();
+        if (round == kHalvings || !halveUnsound(cut, halved, settings.featureTolerancePx)) break;
+    }
     const size_t straightened = straighten(cut);
     report.figures = {{"faces", double(cut.mesh.faceCount())},
                       {"feature edges", double(cut.curves.size())},

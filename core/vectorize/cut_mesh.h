@@ -48,8 +48,10 @@ struct CutMesh {
 
 // Stage "initial-mesh", variant "delaunay": the constrained Delaunay triangulation of the network's nodes and
 // of points as dense as `sharp` is rich (error diffusion, Yang et al. 2003), about `faces` triangles.
+// Segments whose curves leave a patch beside them without a certificate are halved, and pulled toward their
+// chords where that does not help.
 Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, size_t faces,
-                             StageReport& report, Progress& progress);
+                             const VectorizeSettings& settings, StageReport& report, Progress& progress);
 
 // The patches: interior points certified, features marked with their blur, colours constant.
 PatchMesh toPatchMesh(const CutMesh& cut, int channels);

@@ -143,7 +143,8 @@ Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& sett
 
     Image sharp = virtualSharp(image, *network, progress.stopToken());
     auto cut = run("initial-mesh", [&](StageReport& r) {
-        return buildCutMesh(sharp, *network, size_t(settings.initialSurplus * settings.patches), r, progress);
+        return buildCutMesh(sharp, *network, size_t(settings.initialSurplus * settings.patches), settings, r,
+                            progress);
     });
     if (!cut) return tl::unexpected(cut.error());
     if (observe.cutMesh) observe.cutMesh(*cut);
