@@ -174,10 +174,9 @@ QWidget* VectorizePanel::makeFeaturesPart() {
     connect(mFeatures, &QSlider::valueChanged, this,
             [this](int percent) { mSettings.setFeatures(percent / 100.0); });
     connect(mFeatures, &QSlider::sliderReleased, this, &VectorizePanel::editingDone);
+    mFeatures->setToolTip(tr("How many outlines stay sharp when enlarged; to the left, none"));
     auto* part = new QWidget;
-    auto* column = makeColumn(part);
-    column->addLayout(labelled(tr("&Outlines"), mFeatures));
-    column->addWidget(dimLabel(tr("How many outlines stay sharp when enlarged; to the left, none.")));
+    makeColumn(part)->addLayout(labelled(tr("&Outlines"), mFeatures));
     return part;
 }
 
@@ -195,12 +194,11 @@ QWidget* VectorizePanel::makeEdgeContrastPart() {
     connect(mEdgeContrast, &QDoubleSpinBox::valueChanged, this,
             [this](double percent) { mSettings.setEdgeContrast(percent / 100); });
     connect(mEdgeContrast, &QDoubleSpinBox::editingFinished, this, &VectorizePanel::editingDone);
+    mEdgeContrast->setToolTip(
+        tr("Edges above this share of the strongest become features. Raise it where they hold too many "
+           "patches"));
     auto* part = new QWidget;
-    auto* column = makeColumn(part);
-    column->addLayout(labelled(tr("&Edge contrast"), mEdgeContrast));
-    column->addWidget(
-        dimLabel(tr("Edges above this share of the strongest become features. Raise it where they hold too "
-                    "many patches.")));
+    makeColumn(part)->addLayout(labelled(tr("&Edge contrast"), mEdgeContrast));
     return part;
 }
 

@@ -137,7 +137,7 @@ Barycentric onSide(const PatchMesh& mesh, HalfedgeId side, double s) {
 }
 
 // The largest difference, over the channels, between the jump across the middle of a blurred edge and the
-// jump that should be left there.
+// jump that should be left there; as a part of the colours where those are above 1.
 double wrongJump(const PatchMesh& mesh, const EdgeBlur& blur, const ColourOf& colour, EdgeId e) {
     const HalfedgeId sides[] = {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))};
     const BezierCurve curve = toPixels(mesh.controlPoints(sides[0]));

@@ -18,8 +18,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 Image waves() {
-    return paint(120, 90, 3, [](double x, double y, int c) {
-        return .5 + .2 * std::sin(.35 * x + c) * std::cos(.004 * y * y) + .1 * std::sin(.02 * x * y);
+    return paint(160, 120, 3, [](double x, double y, int c) {
+        return .5 + .2 * std::sin(.12 * x + c) * std::cos(.001 * y * y) + .1 * std::sin(.002 * x * y);
     });
 }
 
@@ -41,7 +41,7 @@ std::vector<double> figures(const VectorizeReport& report, const std::string& en
 
 TEST(ErrorSearch, ReachesTheErrorOrSaysWhyNot) {
     const Image image = waves();
-    for (const double wanted : {1.5, 4.0}) {
+    for (const double wanted : {3.0, 6.0}) {
         VectorizeSettings settings;
         Progress progress;
         const ErrorGoal goal = meanError(wanted, image);

@@ -7,6 +7,7 @@
 #include "core/document/codec.h"
 #include "core/document/factor_codec.h"
 #include "core/export/rasterize.h"
+#include "core/mesh/colour_basis.h"
 #include "core/vectorize/solve_colors.h"
 #include "tests/support/painted_image.h"
 #include "tests/support/random_documents.h"
@@ -41,8 +42,12 @@ class FittedDocument : public ::testing::Test {
         StageReport report;
         image = texture(128, 96);
         Document d;
+        Image opponent = image;
+        float* planes[3] = {opponent.plane(0).data(), opponent.plane(1).data(), opponent.plane(2).data()};
+        fromWorking(ColourBasis::Opponent, planes, opponent.planeSize());
         const PatchMesh grid = testing::gridMesh(128, 96, 8, 6);
-        auto mesh = solveColors(grid, image, chooseSites(grid, image, {}, progress), {}, report, progress);
+        auto mesh =
+            solveColors(grid, opponent, chooseSites(grid, opponent, {}, progress), {}, report, progress);
         ASSERT_TRUE(mesh);
         d.mesh = *mesh;
         d.difference.emplace();
