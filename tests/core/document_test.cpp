@@ -169,7 +169,7 @@ TEST(Document, WithSitesStoredTwiceIsTheSameBytes) {
 }
 
 TEST(Document, WithSitesOnPlanesAloneStoredTwiceIsTheSameBytes) {
-    for (const uint8_t terms : {0, 3}) {
+    for (const uint8_t terms : {uint8_t(0), uint8_t(3)}) {
         Document d;
         d.mesh = gridMesh(40, 30, 3, 3);
         d.mesh.forEachPatch([&](PatchId p) {

@@ -49,7 +49,8 @@ PatchMesh solved(const Image& image, const VectorizeSettings& settings, PatchMes
     StageReport report;
     Progress progress;
     const Image opponent = inOpponent(image);
-    auto result = solveColors(std::move(mesh), opponent, opponent, settings, report, progress);
+    const auto sites = chooseSites(mesh, opponent, {settings.termsPerPatch}, progress);
+    auto result = solveColors(std::move(mesh), opponent, sites, settings, report, progress);
     EXPECT_TRUE(result.has_value());
     return *result;
 }
