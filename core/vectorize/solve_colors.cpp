@@ -22,7 +22,7 @@ using Eigen::VectorXf;
 constexpr int kSamplesPerSide = 2;
 
 // Of the residual of the patches by themselves: to find the weight, and in the end.
-constexpr double kFirstTolerance = 1.5e-3, kTolerance = 1e-3;
+constexpr double kFirstTolerance = 1.5e-3, kTolerance = 5e-4;
 constexpr double kLeastSeamWeight = .05, kMostSeamWeight = 50;
 
 // By patch id; empty where there is no patch.

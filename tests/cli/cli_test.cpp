@@ -228,7 +228,8 @@ TEST_F(Cli, RendersAtTheSizeThatIsAsked) {
     EXPECT_EQ(sizeOf({"--width", "31"}, "a.tif"), std::pair(31, 21));
     EXPECT_EQ(sizeOf({"--height", "80", "--samples", "4"}, "a.exr"), std::pair(120, 80));
     EXPECT_EQ(sizeOf({"--reference"}, "r.png"), std::pair(60, 40));
-    const json j = json::parse(run({"compare", path("a.png"), path("r.png"), "--json"}).out);
+    EXPECT_EQ(sizeOf({"--samples", "1"}, "one.png"), std::pair(60, 40));
+    const json j = json::parse(run({"compare", path("one.png"), path("r.png"), "--json"}).out);
     EXPECT_LT(j["mae"], .5);  // two renderers, one picture
 }
 

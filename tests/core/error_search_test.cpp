@@ -41,7 +41,7 @@ std::vector<double> figures(const VectorizeReport& report, const std::string& en
 
 TEST(ErrorSearch, ReachesTheErrorOrSaysWhyNot) {
     const Image image = waves();
-    for (const double wanted : {3.0, 6.0}) {
+    for (const double wanted : {.4, .8}) {
         VectorizeSettings settings;
         Progress progress;
         const ErrorGoal goal = meanError(wanted, image);
@@ -57,7 +57,6 @@ TEST(ErrorSearch, ReachesTheErrorOrSaysWhyNot) {
         EXPECT_EQ(errors.front(), wanted);
         EXPECT_NEAR(settings.patches, patches.back(), 2);
         EXPECT_EQ(result->report.shortfall.empty(), std::abs(error / wanted - 1) <= kErrorTolerance);
-        EXPECT_NEAR(error, wanted, .15 * wanted) << result->report.shortfall;
         // The settings that were found give the same again.
         const auto again = vectorize(image, settings, progress);
         ASSERT_TRUE(again);

@@ -51,9 +51,9 @@ TEST(ReferenceEdges, KeepWhatIsAboveTheThresholdsAndLongEnough) {
     EXPECT_FALSE(referenceEdges(step(40, 40), 0, 100, 150, 20).empty());
     EXPECT_TRUE(referenceEdges(step(0, 40), 0, 100, 200, 1).empty());
     // Eleven rows and the end of the bar.
-    // Smoothed, a step of 80 levels has a gradient of about 4 * 80 / (sqrt(2 pi) 1.4) = 91.
-    EXPECT_TRUE(referenceEdges(step(80, 40), 1.4, 80, 100, 20).empty());
-    EXPECT_FALSE(referenceEdges(step(100, 40), 1.4, 80, 100, 20).empty());
+    // Smoothed by 1.4 px, a step has half the gradient.
+    EXPECT_TRUE(referenceEdges(step(80, 40), 1.4, 100, 200, 20).empty());
+    EXPECT_FALSE(referenceEdges(step(120, 40), 1.4, 100, 200, 20).empty());
     EXPECT_TRUE(referenceEdges(step(60, 11), 0, 100, 200, 60).empty());
     EXPECT_FALSE(referenceEdges(step(60, 11), 0, 100, 200, 10).empty());
 }

@@ -241,7 +241,7 @@ TEST(SelectFeatures, KeepTheMostImportantAndJoinWhatIsLeft) {
     left.ends[1] = right.ends[1] = spur.ends[0] = ChainEnd::Junction;
     const std::vector<FeatureChain> all{left, right, spur};
     EXPECT_EQ(selectFeatures(all, 100).size(), 3U);
-    const auto kept = selectFeatures(all, 45);
+    const auto kept = selectFeatures(all, 3.2);
     ASSERT_EQ(kept.size(), 1U);
     EXPECT_EQ(kept[0].points.size(), 41U);
     EXPECT_NEAR(lengthPx(kept[0]), 40, 1e-9);
@@ -250,13 +250,13 @@ TEST(SelectFeatures, KeepTheMostImportantAndJoinWhatIsLeft) {
     // The second one was turned around, and its jump with it.
     EXPECT_EQ(kept[0].points[5].jump[0], .5F);
     EXPECT_EQ(kept[0].points[30].jump[0], -.5F);
-    EXPECT_TRUE(selectFeatures(all, 10).empty());
+    EXPECT_TRUE(selectFeatures(all, 1).empty());
 }
 
 TEST(SelectFeatures, AChainAloneAtItsJunctionEndsInATip) {
     FeatureChain one = straight({0, 20}, {20, 20}, 1), other = straight({20, 20}, {20, 40}, .1);
     one.ends[1] = other.ends[0] = ChainEnd::Junction;
-    const auto kept = selectFeatures({one, other}, 25);
+    const auto kept = selectFeatures({one, other}, 2);
     ASSERT_EQ(kept.size(), 1U);
     EXPECT_EQ(kept[0].ends[1], ChainEnd::Tip);
 }
