@@ -51,16 +51,24 @@ class ChannelSystem {
                   const VectorXf& weights, int channel)
         : m(equations),
           mWeights(weights),
+          mChannel(channel),
           mTerms(equations.patches.size(), 0),
           mFactors(equations.patches.size()),
           mPartial(equations.patches.size()),
           mTotals(Eigen::Index(equations.rowCount)) {
+        for (size_t p = 0; p < m.patches.size(); ++p)
+            if (m.patches[p].count > 0) mTerms[p] = choices[p].terms[size_t(channel)];
+    }
+
+    // The right side and the preconditioner, which a solution needs. False where progress says stop.
+    bool factorize(const Progress& progress) {
+        const int channel = mChannel;
         mRight.resize(m.patches.size());
         parallelFor(m.patches.size(), 8, [&](size_t begin, size_t end) {
-            for (size_t p = begin; p < end; ++p) {
+            for (size_t p = begin; p < end && !progress.stopRequested(); ++p) {
                 const auto& patch = m.patches[p];
                 if (patch.count == 0) continue;
-                const int n = mTerms[p] = choices[p].terms[size_t(channel)];
+                const int n = mTerms[p];
                 VectorXf targets(Eigen::Index(patch.rowIds.size())), rowWeights(targets.size());
                 for (size_t i = 0; i < patch.rowIds.size(); ++i) {
                     rowWeights(Eigen::Index(i)) = mWeights(patch.rowIds[i]);
@@ -75,6 +83,7 @@ class ChannelSystem {
                 mFactors[p].compute(gramOf(patch).topLeftCorner(n, n) + own.cast<double>());
             }
         });
+        return !progress.stopRequested();
     }
 
     // Each patch by itself, others' shares in common rows left out: the preconditioner.
@@ -125,6 +134,7 @@ class ChannelSystem {
   private:
     const ColorEquations& m;
     const VectorXf& mWeights;
+    int mChannel;
     std::vector<int> mTerms;
     std::vector<Eigen::LLT<MatrixXd>> mFactors;
     PatchVectors mRight;
@@ -245,6 +255,7 @@ Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vec
         const bool last = pass + 1 == passes;
         for (int c = 0; c < mesh.channels(); ++c) {
             ChannelSystem system(equations, choices, weights, c);
+            if (!system.factorize(progress)) return stopped();
             factors[size_t(c)] =
                 conjugateGradients(system, std::move(factors[size_t(c)]), last ? kTolerance : kFirstTolerance,
                                    iterations, progress);
