@@ -3,19 +3,16 @@
 
 #include <QObject>
 #include <QString>
-#include <QUndoStack>
+#include <deque>
+#include <functional>
 #include <memory>
 
+#include "app/change.h"
+#include "app/history.h"
 #include "app/picture_pyramid.h"
 #include "core/document/document.h"
 
 namespace tessera {
-
-// What a listener must look at again. One signal carries it, so that no listener sees half of a change.
-struct Change {
-    bool mesh = false;   // the patches (and with them report, settings, difference)
-    bool saved = false;  // the path or the modified state
-};
 
 // The photo in the two forms in which it is used; both null where it is not known.
 struct Photo {
@@ -49,8 +46,16 @@ class DocumentSession : public QObject {
     QString suggestedPath(const QString& suffix) const;
 
     uint64_t revision() const { return mRevision; }
+    uint64_t savedRevision() const { return mSavedRevision; }
     bool modified() const { return mRevision != mSavedRevision; }
-    QUndoStack& history() { return mHistory; }
+    History& history() { return mHistory; }
+    const History& history() const { return mHistory; }
+
+    // Whether an EditSession is open: the document then is a preview, without a revision of its own.
+    bool editing() const { return mEditing; }
+    // Runs `work` now, or as soon as no EditSession is open (from the event loop, in the order in which it
+    // was asked for). Not at all where the session goes first.
+    void whenIdle(std::function<void()> work);
 
     // Tells the session that `revision` is now in the file at `path`, with the step to which its colours were
     // rounded.
@@ -58,13 +63,19 @@ class DocumentSession : public QObject {
 
   signals:
     void changed(const tessera::Change& change);
+    // An EditSession has been opened or closed.
+    void editingChanged();
 
   private:
-    friend class ReplaceMesh;
+    friend class EditCommand;
+    friend class EditSession;
 
     uint64_t newRevision() { return ++mLastRevision; }
     // Exchanges the document and its revision with `document` and `revision`.
-    void swapState(Document& document, uint64_t& revision);
+    void swapState(Document& document, uint64_t& revision, const Change& change);
+    void showPreview(PatchMesh mesh, const Change& change);
+    void setEditing(bool editing);
+    void runWaiting();
 
     Document mDocument;
     Photo mPhoto;
@@ -73,7 +84,9 @@ class DocumentSession : public QObject {
     uint64_t mLastRevision = 1;
     uint64_t mRevision = 1;
     uint64_t mSavedRevision = 1;
-    QUndoStack mHistory;
+    bool mEditing = false;
+    std::deque<std::function<void()>> mWaiting;
+    History mHistory;
 };
 
 }  // namespace tessera

@@ -5,7 +5,6 @@
 #include <QPointer>
 #include <algorithm>
 
-#include "app/commands/replace_mesh.h"
 #include "app/file_service.h"
 #include "app/jobs/open_job.h"
 #include "app/jobs/save_job.h"
@@ -81,7 +80,10 @@ void Workspace::applyVectorized(uint64_t revision, const VectorizeSettings& sett
     const QString shortfall = asSentence(after.report.shortfall);
     const QPointer<DocumentSession> session = mSession;
     const auto apply = [session, after = std::move(after)] {
-        if (session) session->history().push(new ReplaceMesh(*session, after));
+        if (!session) return;
+        session->whenIdle([session, after] {
+            session->history().push(EditCommand(*session, tr("Vectorize"), after, {.replaced = true}));
+        });
     };
     if (mSession->revision() != revision) {
         emit said({.kind = Message::Kind::Info,

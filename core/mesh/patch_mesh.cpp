@@ -18,6 +18,16 @@ std::array<LatticePoint, 2> straightControlPoints(LatticePoint a, LatticePoint b
     return {LatticePoint{third(a.x, b.x), third(a.y, b.y)}, LatticePoint{third(b.x, a.x), third(b.y, a.y)}};
 }
 
+size_t PatchMesh::bytesBeyond(const PatchMesh& other) const {
+    const auto ofVector = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+    const auto ofSpline = [&](const PatchSpline& spline) {
+        return ofVector(spline.sites) + ofVector(spline.centres) + ofVector(spline.coefficients);
+    };
+    return mConnectivity.bytesBeyond(other.mConnectivity) + mPositions.bytesBeyond(other.mPositions) +
+           mCurves.bytesBeyond(other.mCurves) + mInteriors.bytesBeyond(other.mInteriors) +
+           mSplines.bytesBeyond(other.mSplines, ofSpline) + ofVector(mSmoothJoins);
+}
+
 BezierCurve toPixels(const std::array<LatticePoint, 4>& c) {
     return {{toPixels(c[0]), toPixels(c[1]), toPixels(c[2]), toPixels(c[3])}};
 }

@@ -81,6 +81,9 @@ class PatchMesh {
     // Sets the inner control points of a halfedge's curve, given from its origin.
     void setInnerControlPoints(HalfedgeId h, LatticePoint c1, LatticePoint c2);
 
+    // The memory that this mesh takes and does not share with `other`, in bytes.
+    size_t bytesBeyond(const PatchMesh& other) const;
+
     // Each live element, in order of its id.
     template <class Visit>
     void forEachPatch(Visit&& visit) const {
