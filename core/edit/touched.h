@@ -1,18 +1,29 @@
-// What an edit changed, so that listeners look again only at that.
+// What an edit changed, so that listeners look again at that alone.
 #pragma once
 
 #include <vector>
 
-#include "core/base/ids.h"
+#include "core/mesh/patch_mesh.h"
 
 namespace tessera {
 
 // Ids ascend, without repeats.
 struct Touched {
     std::vector<VertexId> vertices;
-    std::vector<EdgeId> edges;
-    std::vector<PatchId> patches;  // geometry or colour changed
+    std::vector<EdgeId> edges;     // their curve or what is known of them
+    std::vector<PatchId> patches;  // their geometry, colours or attributes
     bool topology = false;         // ids came or went: look at everything
+
+    bool empty() const { return vertices.empty() && edges.empty() && patches.empty() && !topology; }
+    bool operator==(const Touched&) const = default;
 };
+
+// From ids in any order, with repeats.
+Touched touchedOf(std::vector<VertexId> vertices, std::vector<EdgeId> edges, std::vector<PatchId> patches);
+Touched united(const Touched& a, const Touched& b);
+
+// The elements in which two states of a mesh differ; topology is set where their connectivity may. Pages that
+// the two share are passed over.
+Touched differences(const PatchMesh& before, const PatchMesh& after);
 
 }  // namespace tessera

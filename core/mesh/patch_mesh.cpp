@@ -41,7 +41,8 @@ PatchMesh::PatchMesh(int width, int height, int channels, HalfedgeMesh connectiv
       mPositions(mConnectivity.vertexCapacity()),
       mCurves(mConnectivity.edgeCapacity()),
       mInteriors(mConnectivity.faceCapacity()),
-      mSplines(mConnectivity.faceCapacity()) {
+      mSplines(mConnectivity.faceCapacity()),
+      mAttributes(mConnectivity.faceCapacity()) {
     TESSERA_CHECK(positions.size() == mConnectivity.vertexCapacity());
     TESSERA_CHECK(channels == 3 || channels == 4);
     for (uint32_t v = 0; v < positions.size(); ++v) setPosition(VertexId(v), positions[v]);
@@ -56,6 +57,18 @@ PatchMesh::PatchMesh(int width, int height, int channels, HalfedgeMesh connectiv
         setInterior(p, toLattice(defaultInterior(toPixels(controlPoints(p)))));
         setSpline(p, constantSpline({black.data(), size_t(channels)}));
     });
+}
+
+void PatchMesh::setConnectivity(HalfedgeMesh connectivity) {
+    mConnectivity = std::move(connectivity);
+    const auto grow = [](auto& elements, size_t count) {
+        if (elements.size() < count) elements.resize(count);
+    };
+    grow(mPositions, mConnectivity.vertexCapacity());
+    grow(mCurves, mConnectivity.edgeCapacity());
+    grow(mInteriors, mConnectivity.faceCapacity());
+    grow(mSplines, mConnectivity.faceCapacity());
+    grow(mAttributes, mConnectivity.faceCapacity());
 }
 
 std::array<LatticePoint, 4> PatchMesh::controlPoints(HalfedgeId h) const {
