@@ -14,10 +14,7 @@ struct Change {
     bool photo = false;       // the photo has been found, or is another one
     bool saved = false;       // the path or the modified state
 
-    bool mesh() const {
-        return replaced || touched.topology || !touched.patches.empty() || !touched.edges.empty() ||
-               !touched.vertices.empty();
-    }
+    bool mesh() const { return replaced || !touched.empty(); }
 };
 
 }  // namespace tessera

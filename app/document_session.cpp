@@ -51,11 +51,19 @@ void DocumentSession::markSaved(uint64_t revision, const QString& path, std::opt
 void DocumentSession::swapState(Document& document, uint64_t& revision, const Change& change) {
     std::swap(mDocument, document);
     std::swap(mRevision, revision);
-    emit changed(change);
+    announce(document.mesh, change);
 }
 
 void DocumentSession::showPreview(PatchMesh mesh, const Change& change) {
-    mDocument.mesh = std::move(mesh);
+    std::swap(mDocument.mesh, mesh);
+    announce(mesh, change);
+}
+
+void DocumentSession::announce(const PatchMesh& before, const Change& change) {
+    if (change.mesh()) {
+        mIndex.follow(mDocument.mesh, change);
+        mSelection.follow(before, mDocument.mesh, change);
+    }
     emit changed(change);
 }
 

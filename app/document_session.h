@@ -9,7 +9,9 @@
 
 #include "app/change.h"
 #include "app/history.h"
+#include "app/mesh_index.h"
 #include "app/picture_pyramid.h"
+#include "app/selection.h"
 #include "core/document/document.h"
 
 namespace tessera {
@@ -51,6 +53,12 @@ class DocumentSession : public QObject {
     History& history() { return mHistory; }
     const History& history() const { return mHistory; }
 
+    Selection& selection() { return mSelection; }
+    const Selection& selection() const { return mSelection; }
+    // Of the mesh as it is shown now; references hold until the next change.
+    const PatchQuery& query() { return mIndex.query(mDocument.mesh); }
+    const PatchColours& colours() { return mIndex.colours(mDocument.mesh); }
+
     // Whether an EditSession is open: the document then is a preview, without a revision of its own.
     bool editing() const { return mEditing; }
     // Runs `work` now, or as soon as no EditSession is open (from the event loop, in the order in which it
@@ -74,6 +82,7 @@ class DocumentSession : public QObject {
     // Exchanges the document and its revision with `document` and `revision`.
     void swapState(Document& document, uint64_t& revision, const Change& change);
     void showPreview(PatchMesh mesh, const Change& change);
+    void announce(const PatchMesh& before, const Change& change);
     void setEditing(bool editing);
     void runWaiting();
 
@@ -87,6 +96,8 @@ class DocumentSession : public QObject {
     bool mEditing = false;
     std::deque<std::function<void()>> mWaiting;
     History mHistory;
+    Selection mSelection;
+    MeshIndex mIndex;
 };
 
 }  // namespace tessera

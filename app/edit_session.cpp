@@ -1,7 +1,6 @@
 // See edit_session.h.
 #include "app/edit_session.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/base/check.h"
@@ -10,29 +9,21 @@ namespace tessera {
 
 namespace {
 
-template <class Id>
-std::vector<Id> unitedIds(const std::vector<Id>& a, const std::vector<Id>& b) {
-    std::vector<Id> ids;
-    ids.reserve(a.size() + b.size());
-    std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(ids));
-    return ids;
-}
-
 void push(DocumentSession& session, const QString& text, PatchMesh mesh, const Touched& touched) {
     Document after = session.document();
+    if (!after.fitted) after.fitted = after.mesh;
+    if (touched.topology) {
+        for (NamedSelection& selection : after.selections)
+            selection.patches = remapped(after.mesh, mesh, selection.patches);
+        std::erase_if(after.selections, [](const NamedSelection& s) { return s.patches.empty(); });
+    }
     after.mesh = std::move(mesh);
     after.markEdited();
-    session.history().push(EditCommand(session, text, std::move(after), {.touched = touched}));
+    const Change change{.touched = touched, .selections = touched.topology};
+    session.history().push(EditCommand(session, text, std::move(after), change));
 }
 
 }  // namespace
-
-Touched united(const Touched& a, const Touched& b) {
-    return {.vertices = unitedIds(a.vertices, b.vertices),
-            .edges = unitedIds(a.edges, b.edges),
-            .patches = unitedIds(a.patches, b.patches),
-            .topology = a.topology || b.topology};
-}
 
 EditSession::EditSession(DocumentSession& session, QString text)
     : mSession(&session), mText(std::move(text)), mStart(session.document().mesh) {
@@ -61,12 +52,17 @@ void EditSession::show(PatchMesh mesh, Touched touched) {
 
 void EditSession::commit() {
     if (!open()) return;
-    if (!Change{.touched = mTouched}.mesh()) return cancel();
+    if (mTouched.empty()) return cancel();
     PatchMesh mesh = mSession->document().mesh;
-    // Nobody is told: the step that follows brings back what is shown now.
-    mSession->mDocument.mesh = mStart;
+    const Touched touched = mTouched;
+    // Nobody is told, as the step that follows brings back what is shown now; but ids that come and go are
+    // followed from state to state.
+    if (touched.topology)
+        show(mStart, {});
+    else
+        mSession->mDocument.mesh = mStart;
     close();
-    push(*mSession, mText, std::move(mesh), mTouched);
+    push(*mSession, mText, std::move(mesh), touched);
 }
 
 void EditSession::cancel() {
@@ -85,8 +81,17 @@ Result<Touched> applyEdit(DocumentSession& session, const QString& text, const M
         return failure(ErrorCode::Usage, "another change is under way; finish it and try again");
     PatchMesh mesh = session.document().mesh;
     Result<Touched> touched = edit(mesh);
-    if (touched && Change{.touched = *touched}.mesh()) push(session, text, std::move(mesh), *touched);
+    if (touched && !touched->empty()) push(session, text, std::move(mesh), *touched);
     return touched;
+}
+
+bool applyToDocument(DocumentSession& session, const QString& text, const Change& change,
+                     const std::function<void(Document&)>& edit) {
+    if (session.editing()) return false;
+    Document after = session.document();
+    edit(after);
+    session.history().push(EditCommand(session, text, std::move(after), change));
+    return true;
 }
 
 }  // namespace tessera

@@ -52,7 +52,9 @@ class EditSession {
 // open. Returns what was touched.
 Result<Touched> applyEdit(DocumentSession& session, const QString& text, const MeshEdit& edit);
 
-// The union of what two edits touched.
-Touched united(const Touched& a, const Touched& b);
+// A step that changes other parts of the document than its mesh; `change` says which. False, and nothing
+// done, while an EditSession is open.
+bool applyToDocument(DocumentSession& session, const QString& text, const Change& change,
+                     const std::function<void(Document&)>& edit);
 
 }  // namespace tessera

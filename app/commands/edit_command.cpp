@@ -21,6 +21,10 @@ size_t bytesBeyond(const Document& document, const Document& other) {
                    document.source.iccProfile.size() +
                    bytesBeyond(document.embeddedSource, other.embeddedSource) +
                    bytesBeyond(document.previewPng, other.previewPng);
+    // The first edit makes what was the mesh the fitted one.
+    if (document.fitted) bytes += document.fitted->bytesBeyond(other.fitted ? *other.fitted : other.mesh);
+    for (const NamedSelection& selection : document.selections)
+        bytes += selection.patches.size() * sizeof(PatchId);
     for (const UnknownChunk& chunk : document.unknownChunks) bytes += chunk.bytes.size();
     return bytes;
 }
