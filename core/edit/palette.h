@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "core/edit/patch_colours.h"
@@ -29,8 +30,9 @@ struct Palette {
 // kLeast..kMost; fewer entries where there are fewer colours. The same for the same colours.
 Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count);
 
-// How much of each entry is in a colour (in OKLab): at least 0, 1 in sum, continuous.
-std::vector<double> shares(const Palette& palette, glm::dvec3 lab);
+// How much of an entry is in a colour, both in OKLab: the shares of all entries are at least 0, 1 in sum, and
+// continuous.
+double paletteShare(std::span<const glm::dvec3> entries, double spread, size_t entry, glm::dvec3 lab);
 
 // The patches nearest to an entry.
 PatchSet patchesOf(const Palette& palette, int entry);

@@ -22,8 +22,4 @@ struct Touched {
 Touched touchedOf(std::vector<VertexId> vertices, std::vector<EdgeId> edges, std::vector<PatchId> patches);
 Touched united(const Touched& a, const Touched& b);
 
-// The elements in which two states of a mesh differ; topology is set where their connectivity may. Pages that
-// the two share are passed over.
-Touched differences(const PatchMesh& before, const PatchMesh& after);
-
 }  // namespace tessera
