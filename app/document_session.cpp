@@ -48,6 +48,18 @@ void DocumentSession::markSaved(uint64_t revision, const QString& path, std::opt
     emit mHistory.changed();
 }
 
+void DocumentSession::markUnsaved() {
+    mSavedRevision = 0;
+    emit changed({.saved = true});
+    emit mHistory.changed();
+}
+
+void DocumentSession::setPhoto(Photo photo, const QString& path) {
+    mPhoto = std::move(photo);
+    mPhotoPath = path;
+    emit changed({.photo = true});
+}
+
 void DocumentSession::swapState(Document& document, uint64_t& revision, const Change& change) {
     std::swap(mDocument, document);
     std::swap(mRevision, revision);

@@ -16,14 +16,15 @@
 
 namespace tessera {
 
-// The photo in the two forms in which it is used; both null where it is not known.
+// The photo in the forms in which it is used; all null where it is not known.
 struct Photo {
     std::shared_ptr<const Image> image;
     std::shared_ptr<const PicturePyramid> pyramid;
+    std::shared_ptr<const std::vector<uint8_t>> bytes;  // of its file, for documents to embed
 };
 
-// Lives on the UI thread. A revision names one state of the document: a command takes it to a new one,
-// undoing it brings back the old one. Jobs remember the revision that they started from.
+// Lives on the UI thread. A revision, above 0, names one state of the document: a command takes it to a new
+// one, undoing it brings back the old one. Jobs remember the revision that they started from.
 class DocumentSession : public QObject {
     Q_OBJECT
 
@@ -42,6 +43,7 @@ class DocumentSession : public QObject {
     bool hasAlpha() const;
 
     const QString& path() const { return mPath; }
+    const QString& photoPath() const { return mPhotoPath; }
     // What the window calls it: the file's name, or the photo's.
     QString displayName() const;
     // Where a dialog should start, and under which name: beside the photo or the document.
@@ -68,6 +70,10 @@ class DocumentSession : public QObject {
     // Tells the session that `revision` is now in the file at `path`, with the step to which its colours were
     // rounded.
     void markSaved(uint64_t revision, const QString& path, std::optional<double> colourStep);
+    // No state of the session is in a file.
+    void markUnsaved();
+    // The photo has been found, or another one takes its place.
+    void setPhoto(Photo photo, const QString& path);
 
   signals:
     void changed(const tessera::Change& change);

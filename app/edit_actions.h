@@ -9,7 +9,7 @@ namespace tessera {
 // All return what failed as one sentence, and then change nothing; no selection of the right kind is a
 // failure too (Usage).
 
-// A gesture of a panel's sliders is an EditSession that previews recolouringOf(...).apply() instead.
+// In one go; RecolourGesture is for sliders.
 Result<void> recolourSelection(DocumentSession& session, const QString& text, const Recolouring& how,
                                const RecolourOptions& options = {});
 

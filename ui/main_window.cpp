@@ -154,6 +154,15 @@ void MainWindow::connectWorkspace() {
 
 void MainWindow::adoptSession() {
     DocumentSession* session = mWorkspace.session();
+    if (!session) {
+        mCanvas->setSession(nullptr);
+        return showSession();
+    }
+    // This window shows one document; whether the one before may go was asked before.
+    const QList<DocumentSession*> open = mWorkspace.sessions();
+    for (DocumentSession* other : open)
+        if (other != session)
+            mWorkspace.close(other, [](auto&) { return CloseAnswer{CloseAnswer::Kind::Discard}; });
     connect(&session->history(), &History::changed, this, &MainWindow::updateActions);
     mMessages->hide();
     (*mActions)[ActionId::ShowOriginal]->setChecked(false);

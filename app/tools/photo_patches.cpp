@@ -2,6 +2,7 @@
 #include "app/tools/photo_patches.h"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <unordered_map>
 
 #include "core/edit/colour_samples.h"

@@ -30,7 +30,7 @@ void Tool::report(const Result<void>& result) const {
 }
 
 void DragTool::press(const ToolEvent& event) {
-    cancel();  // of a release that never came
+    if (mState != State::Rest) cancel();  // its release never came
     mState = State::Pressed;
     mStart = event;
     pressed(event);
@@ -59,7 +59,7 @@ void DragTool::release(const ToolEvent& event) {
 }
 
 void DragTool::cancel() {
-    const bool wasActive = mState != State::Rest;
+    const bool wasActive = active();
     mState = State::Rest;
     if (wasActive) abandoned();
 }
