@@ -5,59 +5,10 @@
 #include <array>
 #include <map>
 
+#include "core/edit/colour_fan.h"
 #include "core/edit/colour_samples.h"
 
 namespace tessera {
-
-namespace {
-
-bool separates(const PatchMesh& mesh, HalfedgeId h) {
-    const EdgeCurve& curve = mesh.curve(HalfedgeMesh::edge(h));
-    return curve.feature || curve.colourBreak;
-}
-
-// The patches around the origin of `side` that are joined with the patch of `side` there, each by its side
-// that leaves the vertex; that of `side` first.
-std::vector<HalfedgeId> fanOf(const PatchMesh& mesh, HalfedgeId side) {
-    const HalfedgeMesh& c = mesh.connectivity();
-    std::vector<HalfedgeId> fan{side};
-    // Over the side that enters the vertex, patch after patch.
-    for (HalfedgeId h = side;;) {
-        const HalfedgeId entering = c.prev(h);
-        h = HalfedgeMesh::twin(entering);
-        if (separates(mesh, entering) || !c.face(h).valid()) break;
-        if (h == side) return fan;
-        fan.push_back(h);
-    }
-    for (HalfedgeId h = side;;) {
-        const HalfedgeId beyond = HalfedgeMesh::twin(h);
-        if (separates(mesh, h) || !c.face(beyond).valid()) break;
-        h = c.next(beyond);
-        fan.push_back(h);
-    }
-    return fan;
-}
-
-// Values at the corners of a patch, of R, G and B premultiplied: planes of three.
-using CornerValues = std::array<std::array<float, 3>, 3>;
-
-// Adds what is linear between values at the corners.
-PatchSpline withCornersRaised(const PatchSpline& spline, ColourBasis basis, CornerValues values) {
-    float* planes[3] = {values[0].data(), values[1].data(), values[2].data()};
-    fromWorking(basis, planes, 3);
-    PatchSpline result = spline;
-    constexpr double kSlope = .5 / kDomainHeight;
-    for (int c = 0; c < 3; ++c) {
-        const auto& [a, b, w] = values[size_t(c)];
-        float* k = result.coefficients.data() + result.offset(c);
-        k[0] += a;
-        k[1] += b - a;
-        k[2] += float(double(w) / kDomainHeight - kSlope * (double(a) + double(b)));
-    }
-    return result;
-}
-
-}  // namespace
 
 Touched dragColour(PatchMesh& mesh, PatchId p, const Barycentric& at, glm::dvec3 colour) {
     const HalfedgeMesh& c = mesh.connectivity();
