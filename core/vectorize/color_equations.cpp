@@ -256,7 +256,7 @@ void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
     std::vector<Seam> seams;
     uint32_t rows = m.pixelRows;
     mMesh.forEachEdge([&](EdgeId e) {
-        if (mesh.onBorder(e) || mMesh.curve(e).feature) return;
+        if (mesh.onBorder(e) || mMesh.curve(e).feature || mMesh.curve(e).colourBreak) return;
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
         const double length = toPixels(mMesh.controlPoints(h)).length();
         const auto samples = size_t(std::clamp(int(length * kSamplesPerPx), kLeast, kMost));
