@@ -66,6 +66,12 @@ bool Buffer::reserve(size_t bytes) {
     glCreateBuffers(1, &fresh);
     mObject = GlObject<deleteBuffer>(fresh);
     glNamedBufferStorage(fresh, GLsizeiptr(mSize), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    if (mFormat != 0) {
+        GLuint texels = 0;
+        glCreateTextures(GL_TEXTURE_BUFFER, 1, &texels);
+        glTextureBuffer(texels, mFormat, fresh);
+        mTexels = GlObject<deleteTexture>(texels);
+    }
     return true;
 }
 
@@ -121,29 +127,35 @@ StateScope::StateScope()
       mUniformBuffer(integer(GL_UNIFORM_BUFFER_BINDING, 0)),
       mStorageBuffer(integer(GL_SHADER_STORAGE_BUFFER_BINDING)) {
     glGetIntegerv(GL_VIEWPORT, mViewport);
-    glActiveTexture(GL_TEXTURE0);
-    mTexture = integer(GL_TEXTURE_BINDING_2D);
-    mSampler = integer(GL_SAMPLER_BINDING);
-    for (GLuint i = 0; i < kBufferBindings; ++i)
+    for (GLuint unit = 0; unit < kUnitCount; ++unit) {
+        glActiveTexture(GL_TEXTURE0 + unit);
+        mUnits.push_back({integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_BUFFER),
+                          integer(GL_SAMPLER_BINDING)});
+        glBindSampler(unit, 0);
+    }
+    for (GLuint i = 0; i < kBindingCount; ++i)
         mStorageBuffers.push_back(integer(GL_SHADER_STORAGE_BUFFER_BINDING, i));
     for (const GLenum capability : kCapabilities) {
         mEnabled.push_back(glIsEnabled(capability));
         glDisable(capability);
     }
-    glBindSampler(0, 0);
 }
 
 StateScope::~StateScope() {
     for (size_t i = 0; i < kCapabilities.size(); ++i)
         if (mEnabled[i]) glEnable(kCapabilities[i]);
-    for (GLuint i = 0; i < kBufferBindings; ++i)
+    for (GLuint i = 0; i < kBindingCount; ++i)
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, GLuint(mStorageBuffers[i]));
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(mStorageBuffer));
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, GLuint(mUniformBuffer));
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, GLuint(mIndirectBuffer));
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, GLuint(mDispatchBuffer));
-    glBindTextureUnit(0, GLuint(mTexture));
-    glBindSampler(0, GLuint(mSampler));
+    for (GLuint unit = 0; unit < kUnitCount; ++unit) {
+        glActiveTexture(GL_TEXTURE0 + unit);
+        glBindTexture(GL_TEXTURE_2D, GLuint(mUnits[unit].picture));
+        glBindTexture(GL_TEXTURE_BUFFER, GLuint(mUnits[unit].texels));
+        glBindSampler(unit, GLuint(mUnits[unit].sampler));
+    }
     glActiveTexture(GLenum(mActiveTexture));
     glPatchParameteri(GL_PATCH_VERTICES, mPatchVertices);
     glBindVertexArray(GLuint(mVertexArray));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/gl.h"
+#include "render/gpu_layout.h"
 
 namespace tessera::render {
 
@@ -47,22 +48,31 @@ using Framebuffer = GlObject<deleteFramebuffer>;
 VertexArray makeVertexArray();
 Framebuffer makeFramebuffer();
 
-// Storage of a size that grows by being made anew.
+// Storage of a size that grows by being made anew. With a format, shaders can read it as texels.
 class Buffer {
   public:
+    Buffer() = default;
+    explicit Buffer(GLenum format) : mFormat(format) {}
+
     GLuint name() const { return mObject.name(); }
     size_t size() const { return mSize; }
 
     // Makes the buffer at least `bytes` large; true where its contents are lost.
     bool reserve(size_t bytes);
     void write(size_t offset, const void* bytes, size_t count);
+    void bindTexels(Unit unit) const { glBindTextureUnit(GLuint(unit), mTexels.name()); }
+    void bindStorage(Binding binding) const {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(binding), name());
+    }
     template <class T>
     void read(std::span<T> out) const {
         glGetNamedBufferSubData(name(), 0, GLsizeiptr(out.size_bytes()), out.data());
     }
 
   private:
+    GLenum mFormat = 0;
     GlObject<deleteBuffer> mObject;
+    GlObject<deleteTexture> mTexels;
     size_t mSize = 0;
 };
 
@@ -99,11 +109,10 @@ class OffscreenTarget {
 };
 
 // What a frame changes in the context, put back when it ends: framebuffers, viewport, program, vertex array,
-// capabilities, the first texture unit, image unit 0 and the indexed buffers below kBufferBindings.
+// capabilities, the first kUnitCount texture units, uniform buffer 0 and the first kBindingCount storage
+// buffers. Of image units it takes the first and leaves it without an image.
 class StateScope {
   public:
-    static constexpr GLuint kBufferBindings = 12;
-
     StateScope();
     ~StateScope();
     StateScope(const StateScope&) = delete;
@@ -115,9 +124,13 @@ class StateScope {
   private:
     GLint mDrawFramebuffer = 0, mReadFramebuffer = 0;
     GLint mViewport[4] = {};
-    GLint mProgram = 0, mVertexArray = 0, mActiveTexture = 0, mTexture = 0, mSampler = 0;
+    GLint mProgram = 0, mVertexArray = 0, mActiveTexture = 0;
     GLint mPatchVertices = 0, mIndirectBuffer = 0, mDispatchBuffer = 0, mUniformBuffer = 0;
     GLint mStorageBuffer = 0;
+    struct UnitState {
+        GLint picture = 0, texels = 0, sampler = 0;
+    };
+    std::vector<UnitState> mUnits;
     std::vector<GLint> mStorageBuffers;
     std::vector<GLboolean> mEnabled;
 };

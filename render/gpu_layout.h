@@ -10,25 +10,27 @@
 
 namespace tessera::render {
 
-// Binding points of the storage buffers in all programs.
-enum class Binding : uint32_t {
+// Texture units of the buffers that are read, in all programs.
+enum class Unit : uint32_t {
+    Visibility,
     Edges,
     Patches,
     Terms,
     ReachLists,
     Reaches,
     Features,
-    Chains,
     EdgeLevels,
-    Pieces,
-    Draws,
-    Counters
+    Pieces
 };
+constexpr uint32_t kUnitCount = 9;
+// Storage buffers that the compute passes write, and the counters of the resolve pass.
+enum class Binding : uint32_t { EdgeLevels = 0, Pieces = 1, Draws = 2, Counters = 0 };
+constexpr uint32_t kBindingCount = 3;
 
 struct GpuEdge {
     std::array<glm::ivec2, 4> p;
 };
-static_assert(sizeof(GpuEdge) == 32);
+static_assert(sizeof(GpuEdge) == 2 * 16);
 
 constexpr uint32_t kGpuDrawn = 1, kGpuAffine = 2, kGpuCutOut = 4;
 
@@ -37,16 +39,17 @@ struct GpuPatch {
     uint32_t flags;
     glm::ivec2 interior;
     uint32_t firstTerm;
-    uint32_t terms;
+    uint32_t terms;  // count in the lower half, those of the other channels in the upper
     std::array<glm::vec4, 3> polynomial;
 };
-static_assert(sizeof(GpuPatch) == 80);
+static_assert(sizeof(GpuPatch) == 5 * 16);
 
 struct GpuTerm {
     glm::vec2 centre;
     std::array<float, 4> alpha;
+    std::array<float, 2> padding{};
 };
-static_assert(sizeof(GpuTerm) == 24);
+static_assert(sizeof(GpuTerm) == 2 * 16);
 
 struct GpuReachList {
     uint32_t first;
@@ -56,33 +59,27 @@ static_assert(sizeof(GpuReachList) == 8);
 
 constexpr uint32_t kGpuReachFromLeft = 0x40000000, kGpuReachFromRight = 0x80000000;
 
-constexpr uint32_t kGpuEven = 1;
-constexpr uint32_t kGpuSideShift = 2;
+constexpr uint32_t kGpuEven = 1, kGpuFadesAtBegin = 2, kGpuFadesAtEnd = 4;
+constexpr uint32_t kGpuSideShift = 3;
 constexpr size_t kGpuFeatureSegments = 8;
 
 struct GpuFeature {
-    std::array<glm::ivec2, 4> p;
-    std::array<glm::vec2, 2> endTangents;
-    std::array<float, 2> sigma;
-    std::array<uint32_t, 2> patches;
+    std::array<glm::ivec2, 2> ends;
+    std::array<glm::ivec2, 2> inner;
     float bend;
     float flatness;
+    float reach;
+    float chainLength;
+    std::array<float, 2> sigma;
+    std::array<uint32_t, 2> patches;
+    std::array<glm::vec2, 2> endTangents;
     uint32_t chain;
     uint32_t flags;
-    std::array<glm::vec2, kGpuFeatureSegments + 1> chords;
-    std::array<float, kGpuFeatureSegments + 1> arc;
     uint32_t padding = 0;
+    std::array<float, kGpuFeatureSegments + 1> arc;
+    std::array<glm::vec2, kGpuFeatureSegments> chords;
 };
-static_assert(sizeof(GpuFeature) == 192);
-
-constexpr uint32_t kGpuFadesAtBegin = 1, kGpuFadesAtEnd = 2;
-
-struct GpuChain {
-    float length;
-    float reach;
-    uint32_t fades;
-};
-static_assert(sizeof(GpuChain) == 12);
+static_assert(sizeof(GpuFeature) == 12 * 16);
 
 struct GpuPiece {
     uint32_t patchId;

@@ -56,18 +56,17 @@ PieceDraws LodPass::run(const GpuView& view) {
     constexpr uint32_t kNoVertices = 0;
     mDraws.write(0, &kNoVertices, sizeof(kNoVertices));
     mDraws.write(kCommandsOffset, commands.data(), bytes);
-    const auto bind = [](Binding binding, const Buffer& buffer) {
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(binding), buffer.name());
-    };
-    bind(Binding::EdgeLevels, mEdgeLevels);
-    bind(Binding::Pieces, mPieces);
-    bind(Binding::Draws, mDraws);
+    mEdgeLevels.bindStorage(Binding::EdgeLevels);
+    mPieces.bindStorage(Binding::Pieces);
+    mDraws.bindStorage(Binding::Draws);
+    mEdgeLevels.bindTexels(Unit::EdgeLevels);
+    mPieces.bindTexels(Unit::Pieces);
     glUseProgram(mEdgeProgram.name());
     glDispatchCompute(groups(view.edgeCount), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     glUseProgram(mPatchProgram.name());
     glDispatchCompute(groups(view.patchCount), 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
     return {mDraws.name(), GLintptr(kCommandsOffset), GLsizei(view.drawCount)};
 }
 

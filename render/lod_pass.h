@@ -30,7 +30,7 @@ class LodPass {
   private:
     Program mEdgeProgram, mPatchProgram;
     bool mManyDraws = false;
-    Buffer mEdgeLevels, mPieces, mDraws;
+    Buffer mEdgeLevels{GL_R32UI}, mPieces{GL_RG32UI}, mDraws;
 };
 
 }  // namespace tessera::render

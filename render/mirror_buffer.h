@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/gl_objects.h"
+#include "render/gpu_layout.h"
 
 namespace tessera::render {
 
@@ -25,9 +26,11 @@ class MirrorBuffer {
     static_assert(std::is_trivially_copyable_v<Record>);
 
   public:
+    explicit MirrorBuffer(GLenum format) : mBuffer(format) {}
+
     size_t size() const { return mRecords.size(); }
     const Record& operator[](size_t i) const { return mRecords[i]; }
-    GLuint name() const { return mBuffer.name(); }
+    void bind(Unit unit) const { mBuffer.bindTexels(unit); }
 
     void resize(size_t count) {
         const size_t before = mRecords.size();

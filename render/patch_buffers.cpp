@@ -29,10 +29,11 @@ bool affine(const LatticeTriangle& t) {
     return true;
 }
 
-GpuFeature gpuFeature(const PatchMesh& mesh, const EdgeBlur::Feature& f) {
+GpuFeature gpuFeature(const PatchMesh& mesh, const EdgeBlur::Feature& f, const EdgeBlur::Chain& chain) {
     GpuFeature result{};
     const auto control = mesh.controlPoints(f.halfedge);
-    for (size_t i = 0; i < control.size(); ++i) result.p[i] = toGpu(control[i]);
+    result.ends = {toGpu(control[0]), toGpu(control[3])};
+    result.inner = {toGpu(control[1]), toGpu(control[2])};
     for (size_t i = 0; i < 2; ++i) {
         result.endTangents[i] = glm::vec2(f.endTangents[i]);
         result.sigma[i] = float(f.sigma[i]);
@@ -41,18 +42,15 @@ GpuFeature gpuFeature(const PatchMesh& mesh, const EdgeBlur::Feature& f) {
     result.bend = float(f.bend);
     result.flatness = float(f.flatness);
     result.chain = f.chain;
-    result.flags = (f.even ? kGpuEven : 0) | uint32_t(f.sides[0]) << kGpuSideShift |
+    result.reach = float(chain.reach);
+    result.chainLength = float(chain.length);
+    result.flags = (f.even ? kGpuEven : 0) | (chain.fadesAtBegin ? kGpuFadesAtBegin : 0) |
+                   (chain.fadesAtEnd ? kGpuFadesAtEnd : 0) | uint32_t(f.sides[0]) << kGpuSideShift |
                    uint32_t(f.sides[1]) << (kGpuSideShift + 2);
-    for (size_t i = 0; i <= kGpuFeatureSegments; ++i) {
-        result.chords[i] = glm::vec2(f.curve.at(double(i) / kGpuFeatureSegments) - f.curve.p[0]);
-        result.arc[i] = float(f.arc[i]);
-    }
+    for (size_t i = 0; i <= kGpuFeatureSegments; ++i) result.arc[i] = float(f.arc[i]);
+    for (size_t i = 0; i < kGpuFeatureSegments; ++i)
+        result.chords[i] = glm::vec2(f.chords[i].from + f.chords[i].along - f.curve.p[0]);
     return result;
-}
-
-GpuChain gpuChain(const EdgeBlur::Chain& chain) {
-    return {float(chain.length), float(chain.reach),
-            (chain.fadesAtBegin ? kGpuFadesAtBegin : 0) | (chain.fadesAtEnd ? kGpuFadesAtEnd : 0)};
 }
 
 }  // namespace
@@ -151,7 +149,7 @@ void PatchBuffers::setSpline(const PatchMesh& mesh, PatchId p, GpuPatch& patch) 
     if (mHeap.size() > mTerms.size()) mTerms.resize(std::max(mHeap.size(), mTerms.size() * 5 / 4));
     uint32_t others = 0;
     std::vector<GpuTerm> terms(count);
-    for (uint32_t i = 0; i < count; ++i) terms[i] = {glm::vec2(spline.centre(int(i))), {}};
+    for (uint32_t i = 0; i < count; ++i) terms[i] = {glm::vec2(spline.centre(int(i))), {}, {}};
     for (int ch = 0; ch < channels; ++ch) {
         const size_t first = spline.offset(ch);
         for (size_t row = 0; row < 3; ++row) patch.polynomial[row][ch] = spline.coefficients[first + row];
@@ -170,9 +168,8 @@ void PatchBuffers::setBlur(const PatchMesh& mesh, double sharpen) {
     const auto chains = blur.chains();
     mBlurred = !features.empty();
     mFeatures.resize(features.size());
-    for (size_t i = 0; i < features.size(); ++i) mFeatures.set(i, gpuFeature(mesh, features[i]));
-    mChains.resize(chains.size());
-    for (size_t i = 0; i < chains.size(); ++i) mChains.set(i, gpuChain(chains[i]));
+    for (size_t i = 0; i < features.size(); ++i)
+        mFeatures.set(i, gpuFeature(mesh, features[i], chains[features[i].chain]));
 
     // Reaches in runs with room to spare, so that a patch that is reached by one more moves no other's.
     mReachLists.resize(mPatches.size());
@@ -190,27 +187,23 @@ void PatchBuffers::setBlur(const PatchMesh& mesh, double sharpen) {
 
 size_t PatchBuffers::upload() {
     return mEdges.upload() + mPatches.upload() + mTerms.upload() + mReachLists.upload() + mReaches.upload() +
-           mFeatures.upload() + mChains.upload();
+           mFeatures.upload();
 }
 
 void PatchBuffers::bind() const {
-    const auto at = [](Binding binding, GLuint name) {
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(binding), name);
-    };
-    at(Binding::Edges, mEdges.name());
-    at(Binding::Patches, mPatches.name());
-    at(Binding::Terms, mTerms.name());
-    at(Binding::ReachLists, mReachLists.name());
-    at(Binding::Reaches, mReaches.name());
-    at(Binding::Features, mFeatures.name());
-    at(Binding::Chains, mChains.name());
+    mEdges.bind(Unit::Edges);
+    mPatches.bind(Unit::Patches);
+    mTerms.bind(Unit::Terms);
+    mReachLists.bind(Unit::ReachLists);
+    mReaches.bind(Unit::Reaches);
+    mFeatures.bind(Unit::Features);
 }
 
 GpuView gpuView(const PatchMesh& mesh, const View& view, int samplesPerSide, glm::ivec2 target) {
     // Farther off nothing of a picture is in view, and the differences stay in 32 bits.
     constexpr double kFarthest = 1 << 29;
-    // Output pixels: a thirty-second is seen by few pixel centres; the resolve pass mends the parameters.
-    constexpr double kEdgeTolerance = 1.0 / 32, kInsideTolerance = 1.0 / 4;
+    // Output pixels: a sixty-fourth is seen by few pixel centres; the resolve pass mends the parameters.
+    constexpr double kEdgeTolerance = 1.0 / 64, kInsideTolerance = 1.0 / 4;
     GpuView result{};
     for (int i = 0; i < 2; ++i) {
         const double origin = std::clamp(view.origin[i] * kLatticePerPixel, -kFarthest, kFarthest);

@@ -59,13 +59,12 @@ class PatchBuffers {
     void setPatch(const PatchMesh& mesh, PatchId p);
     void setSpline(const PatchMesh& mesh, PatchId p, GpuPatch& patch);
 
-    MirrorBuffer<GpuEdge> mEdges;
-    MirrorBuffer<GpuPatch> mPatches;
-    MirrorBuffer<GpuTerm> mTerms;
-    MirrorBuffer<GpuReachList> mReachLists;
-    MirrorBuffer<uint32_t> mReaches;
-    MirrorBuffer<GpuFeature> mFeatures;
-    MirrorBuffer<GpuChain> mChains;
+    MirrorBuffer<GpuEdge> mEdges{GL_RGBA32I};
+    MirrorBuffer<GpuPatch> mPatches{GL_RGBA32UI};
+    MirrorBuffer<GpuTerm> mTerms{GL_RGBA32F};
+    MirrorBuffer<GpuReachList> mReachLists{GL_RG32UI};
+    MirrorBuffer<uint32_t> mReaches{GL_R32UI};
+    MirrorBuffer<GpuFeature> mFeatures{GL_RGBA32UI};
     TermHeap mHeap;
     std::vector<TermHeap::Run> mRuns;           // by patch id
     std::vector<std::array<float, 2>> mSigmas;  // by edge id; -1 where the edge is no feature

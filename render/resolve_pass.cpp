@@ -49,7 +49,7 @@ Result<EvaluationCounts> ResolvePass::runCounted(int samples) {
     counters.reserve(sizeof(EvaluationCounts));
     EvaluationCounts counts;
     counters.write(0, &counts, sizeof(counts));
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(Binding::Counters), counters.name());
+    counters.bindStorage(Binding::Counters);
     drawOverViewport(mCountedPrograms.at(samples));
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     counters.read(std::span(&counts, 1));

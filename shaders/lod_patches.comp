@@ -2,13 +2,19 @@
 // Which patches can be seen, and in how many pieces each has to be split so that no side of a piece needs more
 // than the tessellator's level.
 #include "include/gpu_layout.glsl"
-#include "include/buffers.glsl"
 #include "include/geometry.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 7) buffer EdgeLevelBuffer { uint edgeLevels[]; };
-layout(std430, binding = 8) writeonly buffer PieceBuffer { Piece pieces[]; };
-layout(std430, binding = 9) buffer DrawBuffer {
+layout(std430, binding = 0) buffer EdgeLevelBuffer { uint edgeLevels[]; };
+layout(std430, binding = 1) writeonly buffer PieceBuffer { Piece pieces[]; };
+// DrawArraysIndirectCommand.
+struct DrawCommand {
+    uint count;
+    uint instanceCount;
+    uint first;
+    uint baseInstance;
+};
+layout(std430, binding = 2) buffer DrawBuffer {
     uint spentVertices;
     DrawCommand draws[];
 };
@@ -64,9 +70,11 @@ void emitPieces(uint p, ivec2 lattice[10], float bend, uint depth) {
 
 void main() {
     const uint p = gl_GlobalInvocationID.x;
-    if (p >= view.patchCount || (patches[p].flags & kDrawn) == 0u) return;
+    if (p >= view.patchCount) return;
+    const PatchShape shape = loadShape(p);
+    if ((shape.flags & kDrawn) == 0u) return;
     ivec2 lattice[10];
-    loadControlPoints(p, lattice);
+    loadControlPoints(shape, lattice);
     vec2 b[10];
     vec2 lo = vec2(1e30), hi = vec2(-1e30);
     for (int i = 0; i < 10; ++i) {
@@ -76,15 +84,9 @@ void main() {
     }
     if (!seen(lo, hi)) return;
 
-    // The second differences along the three directions of the domain.
-    float bend = 0.0;
-    for (int s = 0; s < 3; ++s)
-        bend = max(bend, curveBend(vec2[4](b[3 * s], b[3 * s + 1], b[3 * s + 2], b[(3 * s + 3) % 9])));
-    bend = max(bend, length(b[8] - 2.0 * b[9] + b[4]));
-    bend = max(bend, length(b[2] - 2.0 * b[9] + b[7]));
-    bend = max(bend, length(b[1] - 2.0 * b[9] + b[5]));
+    const float bend = patchBend(b);
     uint bits = levelBits(bend, view.insideTolerance);
-    for (int s = 0; s < 3; ++s) bits = max(bits, edgeLevels[patches[p].sides[s] >> 1]);
+    for (int s = 0; s < 3; ++s) bits = max(bits, edgeLevels[shape.sides[s] >> 1]);
     if (bits <= kTessellatorBits) {
         emit(p, 0u, bits);
         return;
@@ -92,6 +94,6 @@ void main() {
     const uint depth = bits - kTessellatorBits;
     // A side of a piece has at least one segment, seen from the other patch too. That raises no level beyond
     // the tessellator's, so that it matters to no patch when its neighbours do so.
-    for (int s = 0; s < 3; ++s) atomicMax(edgeLevels[patches[p].sides[s] >> 1], depth);
+    for (int s = 0; s < 3; ++s) atomicMax(edgeLevels[shape.sides[s] >> 1], depth);
     emitPieces(p, lattice, bend, depth);
 }

@@ -1,25 +1,24 @@
 #version 450 core
 // Levels of a piece: those of the edges on its sides on a patch's side, and one for all sides inside it.
 #include "include/gpu_layout.glsl"
-#include "include/buffers.glsl"
 #include "include/geometry.glsl"
 
 layout(vertices = 1) out;
-layout(std430, binding = 7) readonly buffer EdgeLevelBuffer { uint edgeLevels[]; };
-layout(std430, binding = 8) readonly buffer PieceBuffer { Piece pieces[]; };
 
 flat in uint vPiece[];
 patch out uint tPatch;
 patch out uint tExact;
+patch out uvec3 tSides;
 patch out vec3 tLevels;  // of the sides from corner 0, 1, 2
 patch out vec2 tCorners[3];
 patch out vec2 tControl[10];
 
 void main() {
-    const Piece piece = pieces[vPiece[0]];
+    const Piece piece = loadPiece(vPiece[0]);
     const uint depth = pieceDepth(piece.code);
+    const PatchShape shape = loadShape(piece.patchId);
     ivec2 lattice[10];
-    loadControlPoints(piece.patchId, lattice);
+    loadControlPoints(shape, lattice);
     vec2 b[10];
     float extent = 0.0;
     for (int i = 0; i < 10; ++i) {
@@ -27,18 +26,13 @@ void main() {
         tControl[i] = b[i];
         extent = max(extent, max(abs(b[i].x), abs(b[i].y)));
     }
-    float bend = 0.0;
-    for (int s = 0; s < 3; ++s)
-        bend = max(bend, curveBend(vec2[4](b[3 * s], b[3 * s + 1], b[3 * s + 2], b[(3 * s + 3) % 9])));
-    bend = max(bend, length(b[8] - 2.0 * b[9] + b[4]));
-    bend = max(bend, length(b[2] - 2.0 * b[9] + b[7]));
-    bend = max(bend, length(b[1] - 2.0 * b[9] + b[5]));
-    const uint bits = levelBits(bend, view.insideTolerance);
+    const uint bits = levelBits(patchBend(b), view.insideTolerance);
     const uint insideBits = min(bits - min(bits, depth), kTessellatorBits);
 
     vec2 corners[3];
     pieceCorners(piece.code, corners);
     tPatch = piece.patchId;
+    tSides = shape.sides;
     tExact = extent > kExactBeyond ? 1u : 0u;
     for (int i = 0; i < 3; ++i) {
         tCorners[i] = corners[i];
@@ -48,7 +42,7 @@ void main() {
                          : from.x == 0.0 && to.x == 0.0                     ? 2
                                                                             : -1;
         const uint sideBits =
-            side < 0 ? insideBits : edgeLevels[patches[piece.patchId].sides[side] >> 1] - depth;
+            side < 0 ? insideBits : loadEdgeLevel(shape.sides[side] >> 1) - depth;
         tLevels[i] = float(1u << sideBits);
     }
     // Outer level i is that of the side opposite corner i.

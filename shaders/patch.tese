@@ -2,13 +2,13 @@
 // Positions of the tessellated points. One on a patch's side comes from the edge's curve in the edge's own
 // direction, so that both patches beside it get the same bits.
 #include "include/gpu_layout.glsl"
-#include "include/buffers.glsl"
 #include "include/geometry.glsl"
 
 layout(triangles, equal_spacing, ccw) in;
 
 patch in uint tPatch;
 patch in uint tExact;
+patch in uvec3 tSides;
 patch in vec3 tLevels;
 patch in vec2 tCorners[3];
 patch in vec2 tControl[10];
@@ -24,10 +24,12 @@ float step_(float at, float level) {
 vec2 edgePoint(uint halfedge, float t) {
     const uint e = halfedge >> 1;
     const float along = (halfedge & 1u) == 0u ? t : 1.0 - t;  // exact
+    ivec2 lattice[4];
+    loadEdge(e, lattice);
     vec2 p[4];
     float extent = 0.0;
     for (int i = 0; i < 4; ++i) {
-        p[i] = toGrid(edges[e].p[i]);
+        p[i] = toGrid(lattice[i]);
         extent = max(extent, max(abs(p[i].x), abs(p[i].y)));
     }
     // The ends are vertices, which several edges share.
@@ -35,7 +37,7 @@ vec2 edgePoint(uint halfedge, float t) {
     if (along == 1.0) return p[3];
     if (extent <= kExactBeyond) return curvePoint(p, along);
     dvec2 exact[4];
-    for (int i = 0; i < 4; ++i) exact[i] = toGridExact(edges[e].p[i]);
+    for (int i = 0; i < 4; ++i) exact[i] = toGridExact(lattice[i]);
     return vec2(curvePoint(exact, double(along)));
 }
 
@@ -46,7 +48,7 @@ vec2 insidePoint(vec2 at) {
         return patchPoint(control, at);
     }
     ivec2 lattice[10];
-    loadControlPoints(tPatch, lattice);
+    loadControlPoints(loadShape(tPatch), lattice);
     dvec2 control[10];
     for (int i = 0; i < 10; ++i) control[i] = toGridExact(lattice[i]);
     return vec2(patchPoint(control, dvec2(at)));
@@ -66,9 +68,9 @@ void main() {
     }
     // Dyadic on the sides of a piece: exact there.
     const vec2 at = c.x * tCorners[0] + c.y * tCorners[1] + c.z * tCorners[2];
-    const vec2 position = at.y == 0.0           ? edgePoint(patches[tPatch].sides[0], at.x)
-                          : at.x + at.y == 1.0  ? edgePoint(patches[tPatch].sides[1], at.y)
-                          : at.x == 0.0         ? edgePoint(patches[tPatch].sides[2], 1.0 - at.y)
+    const vec2 position = at.y == 0.0           ? edgePoint(tSides[0], at.x)
+                          : at.x + at.y == 1.0  ? edgePoint(tSides[1], at.y)
+                          : at.x == 0.0         ? edgePoint(tSides[2], 1.0 - at.y)
                                                 : insidePoint(at);
     fPatch = tPatch;
     fParameters = at;

@@ -3,19 +3,13 @@
 // at their middle; more only where features are blurred. Working space, not clamped, premultiplied.
 // SAMPLES is 1 or 4; COUNT_EVALUATIONS adds up how many splines were evaluated.
 #include "include/gpu_layout.glsl"
-#include "include/buffers.glsl"
 #include "include/geometry.glsl"
 
-layout(std430, binding = 2) readonly buffer TermBuffer { Term splineTerms[]; };
-layout(std430, binding = 3) readonly buffer ReachListBuffer { ReachList reachLists[]; };
-layout(std430, binding = 4) readonly buffer ReachBuffer { uint reaches[]; };
-layout(std430, binding = 5) readonly buffer FeatureBuffer { Feature features[]; };
-layout(std430, binding = 6) readonly buffer ChainBuffer { Chain chains[]; };
 layout(binding = 0) uniform usampler2D visibility;
 layout(location = 0) out vec4 colour;
 
 #ifdef COUNT_EVALUATIONS
-layout(std430, binding = 10) buffer CounterBuffer { uint counters[2]; };  // outside blur, for blur
+layout(std430, binding = 0) buffer CounterBuffer { uint counters[2]; };  // outside blur, for blur
 uint evaluations = 0u;
 void countEvaluation() {
     ++evaluations;
@@ -38,10 +32,10 @@ vec2 imagePoint(vec2 grid) {
 const int kRefinements = 3;
 const float kRefined = 0.01;  // samples
 
-// The parameters of the patch's point at `grid`, from ones nearby.
-vec2 refinedParameters(uint p, vec2 grid, vec2 vw) {
+// The parameters of the shape's point at `grid`, from ones nearby.
+vec2 refinedParameters(PatchShape shape, vec2 grid, vec2 vw) {
     ivec2 lattice[10];
-    loadControlPoints(p, lattice);
+    loadControlPoints(shape, lattice);
     vec2 b[10];
     for (int i = 0; i < 10; ++i) b[i] = toGrid(lattice[i]);
     for (int step = 0; step < kRefinements; ++step) {
@@ -65,24 +59,60 @@ vec2 clampedToDomain(vec2 vw) {
     return b.yz / (b.x + b.y + b.z);
 }
 
-// The sum of the colours of the samples in `mask`, which are all patch p's; `grid` and `vw` are their mean.
-vec4 sumOfSamples(uint p, vec2 grid, vec2 vw, vec2 samples[SAMPLES], uint mask) {
-    const uint flags = patches[p].flags;
-    if ((flags & kCutOut) != 0u) return vec4(0.0);
-    if ((flags & kAffine) == 0u) vw = refinedParameters(p, grid, vw);
+// Beyond this sum of second moments a spline is evaluated for each sample: the second order is not enough where
+// a pixel is a good part of a patch.
+const float kMostSpread = 0.003;
+
+vec4 splineAt(uint p, vec2 grid, vec2 vw, vec3 spread) {
+    const PatchShape shape = loadShape(p);
+    if ((shape.flags & kAffine) == 0u) vw = refinedParameters(shape, grid, vw);
+    return evaluateSpline(p, SplinePlace(domainPoint(clampedToDomain(vw)), spread));
+}
+
+// The sum of the patch's own colours at the samples in `mask`.
+vec4 sumOfSplines(uint p, vec2 grid[SAMPLES], uvec2 visible[SAMPLES], uint mask) {
+    vec2 middle = vec2(0.0), vw = vec2(0.0);
+    for (int k = 0; k < SAMPLES; ++k) {
+        if ((mask >> k & 1u) == 0u) continue;
+        middle += grid[k];
+        vw += unpackUnorm2x16(visible[k].y);
+    }
     const float count = float(bitCount(mask));
-    vec4 sum = count * evaluateSpline(p, domainPoint(clampedToDomain(vw)));
+    vw /= count;
+    vec3 spread = vec3(0.0);
+    for (int k = 0; k < SAMPLES; ++k) {
+        if ((mask >> k & 1u) == 0u) continue;
+        const vec2 off = domainPoint(unpackUnorm2x16(visible[k].y) - vw);
+        spread += vec3(off * off, off.x * off.y);
+    }
+    spread /= count;
+    if (spread.x + spread.y <= kMostSpread) return count * splineAt(p, middle / count, vw, spread);
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < SAMPLES; ++k)
+        if ((mask >> k & 1u) != 0u) sum += splineAt(p, grid[k], unpackUnorm2x16(visible[k].y), vec3(0.0));
+    return sum;
+}
+
+// The sum of the colours of the samples in `mask`, which are all patch p's.
+vec4 sumOfSamples(uint p, vec2 grid[SAMPLES], uvec2 visible[SAMPLES], vec2 samples[SAMPLES], uint mask) {
+    if ((loadFlags(p) & kCutOut) != 0u) return vec4(0.0);
+    vec4 sum = sumOfSplines(p, grid, visible, mask);
 #ifdef COUNT_EVALUATIONS
     const uint before = evaluations;
 #endif
-    if (view.sharpen > 0.0) sum += blurOf(p, samples, mask);
+    if (view.sharpen > 0.0) {
+        const vec2 pixel = imagePoint(vec2(1.0));  // of the grid
+        const vec2 middle = SAMPLES == 1 ? samples[0] : 0.5 * (samples[0] + samples[SAMPLES - 1]);
+        const float slack = SAMPLES == 1 ? 0.01 : 0.01 + 0.5 * length(pixel);
+        sum += blurOf(p, samples, mask, middle, slack);
+    }
 #ifdef COUNT_EVALUATIONS
     atomicAdd(counters[0], before);
     atomicAdd(counters[1], evaluations - before);
     evaluations = 0u;
 #endif
     sum = toWorking(sum);
-    if (view.channels == 3u) sum.w = count;
+    if (view.channels == 3u) sum.w = float(bitCount(mask));
     return sum;
 }
 
@@ -105,16 +135,10 @@ void main() {
         const uint p = visible[s].x;
         if (p == kNoPatch || (done >> s & 1u) != 0u) continue;
         uint mask = 0u;
-        vec2 middle = vec2(0.0), vw = vec2(0.0);
-        for (int k = s; k < SAMPLES; ++k) {
-            if (visible[k].x != p) continue;
-            mask |= 1u << k;
-            middle += grid[k];
-            vw += unpackUnorm2x16(visible[k].y);
-        }
+        for (int k = s; k < SAMPLES; ++k)
+            if (visible[k].x == p) mask |= 1u << k;
         done |= mask;
-        const float share = 1.0 / float(bitCount(mask));
-        sum += sumOfSamples(p, share * middle, share * vw, samples, mask);
+        sum += sumOfSamples(p, grid, visible, samples, mask);
     }
     colour = sum / float(SAMPLES);
 }

@@ -43,11 +43,11 @@ struct FeatureCurve {
     vec2 c1, c2, c3;
 };
 
-FeatureCurve featureCurve(uint f) {
-    const ivec2 p0 = features[f].p[0];
+FeatureCurve featureCurve(uint f, ivec4 ends) {
+    const ivec4 inner = loadFeatureInner(f);
     const float pixel = 1.0 / 256.0;
-    const vec2 a = vec2(features[f].p[1] - p0) * pixel, b = vec2(features[f].p[2] - p0) * pixel,
-               c = vec2(features[f].p[3] - p0) * pixel;
+    const vec2 a = vec2(inner.xy - ends.xy) * pixel, b = vec2(inner.zw - ends.xy) * pixel,
+               c = vec2(ends.zw - ends.xy) * pixel;
     return FeatureCurve(3.0 * a, 3.0 * (b - 2.0 * a), c - 3.0 * (b - a));
 }
 
@@ -79,24 +79,27 @@ void takeNearer(FeatureCurve c, vec2 at, float t, inout Foot foot, inout bool ne
 }
 
 // Whether feature f has a point nearer than foot.distance to `at`; then that is the new foot.
-bool findFoot(uint f, FeatureCurve c, vec2 at, inout Foot foot) {
+bool findFoot(uint f, FeatureCurve c, FeatureBounds bounds, bool even, vec2 at, inout Foot foot) {
     const vec2 base = c.c1 + c.c2 + c.c3;
     const vec2 onBase = nearestOnSegment(vec2(0.0), base, at);
-    const float limit = foot.distance + features[f].bend;
+    const float limit = foot.distance + bounds.bend;
     if (onBase.y >= limit * limit) return false;
     float t = onBase.x;
     float span = kEvenSpan;
-    if ((features[f].flags & kEven) == 0u) {
+    if (!even) {
         span = 1.0 / float(kFeatureSegments);
         float best = 1e30;
+        vec2 from = vec2(0.0);
         for (int i = 0; i < kFeatureSegments; ++i) {
-            const vec2 from = features[f].chords[i];
-            const vec2 onChord = nearestOnSegment(from, features[f].chords[i + 1] - from, at);
+            const vec4 ends = loadFeatureChords(f, i >> 1);
+            const vec2 to = (i & 1) == 0 ? ends.xy : ends.zw;
+            const vec2 onChord = nearestOnSegment(from, to - from, at);
+            from = to;
             if (onChord.y >= best) continue;
             best = onChord.y;
             t = (float(i) + onChord.x) * span;
         }
-        const float chordLimit = foot.distance + features[f].flatness;
+        const float chordLimit = foot.distance + bounds.flatness;
         if (best >= chordLimit * chordLimit) return false;
     }
     bool nearer = false;
@@ -106,36 +109,41 @@ bool findFoot(uint f, FeatureCurve c, vec2 at, inout Foot foot) {
 }
 
 float featureSigma(uint f, float t) {
-    return features[f].sigma[0] + t * (features[f].sigma[1] - features[f].sigma[0]);
+    const vec2 sigma = loadFeatureSigma(f);
+    return sigma.x + t * (sigma.y - sigma.x);
 }
 
-float blurWeight(uint f, uint chain, Foot foot) {
+float blurWeight(uint f, Foot foot) {
     const float sigma = featureSigma(f, foot.t);
     if (sigma <= 0.0 || foot.distance >= kBlurReach * sigma) return 0.0;
     const float s = foot.t * float(kFeatureSegments);
     const int i = min(int(s), kFeatureSegments - 1);
-    const float arc = features[f].arc[i] + (s - float(i)) * (features[f].arc[i + 1] - features[f].arc[i]);
-    const uint fades = chains[chain].fades;
-    const float toEnd = min((fades & kFadesAtBegin) != 0u ? arc : 1e30,
-                            (fades & kFadesAtEnd) != 0u ? chains[chain].length - arc : 1e30);
+    const uint flags = loadFeatureFlags(f);
+    float toEnd = 1e30;
+    if ((flags & (kFadesAtBegin | kFadesAtEnd)) != 0u) {
+        const float before = loadFeatureArc(f, i), arc = before + (s - float(i)) * (loadFeatureArc(f, i + 1) - before);
+        if ((flags & kFadesAtBegin) != 0u) toEnd = arc;
+        if ((flags & kFadesAtEnd) != 0u) toEnd = min(toEnd, loadFeatureBounds(f).chainLength - arc);
+    }
     return blurShare(foot.distance / sigma) * fade3(0.0, kBlurFade * sigma, toEnd);
 }
 
 // 0 left, 1 right.
-int sideOf(uint f, uint reach, uint p, FeatureCurve c, Foot foot) {
-    if (p == features[f].patches[0]) return 0;
-    if (p == features[f].patches[1]) return 1;
+int sideOf(uint f, uint reach, uint p, uvec2 beside, Foot foot) {
+    if (p == beside.x) return 0;
+    if (p == beside.y) return 1;
     const bool left = (reach & kReachFromLeft) != 0u, right = (reach & kReachFromRight) != 0u;
     if (left != right) return left ? 0 : 1;
-    const vec2 tangent = foot.t <= 0.0   ? features[f].endTangents[0]
-                         : foot.t >= 1.0 ? features[f].endTangents[1]
-                                         : curveTangent(c, foot.t);
+    const vec4 ends = loadFeatureEndTangents(f);
+    const vec2 tangent = foot.t <= 0.0   ? ends.xy
+                         : foot.t >= 1.0 ? ends.zw
+                                         : curveTangent(featureCurve(f, loadFeatureEnds(f)), foot.t);
     return tangent.x * foot.off.y - tangent.y * foot.off.x > 0.0 ? 0 : 1;
 }
 
 // The foot's point in the domain of the patch on `side`.
 vec2 featureDomainPoint(uint f, int side, float t) {
-    const uint corner = features[f].flags >> (kSideShift + 2u * uint(side)) & 3u;
+    const uint corner = loadFeatureFlags(f) >> (kSideShift + 2u * uint(side)) & 3u;
     const float to = side == 0 ? t : 1.0 - t;
     const vec2 vw = corner == 0u ? vec2(to, 0.0) : corner == 1u ? vec2(1.0 - to, to) : vec2(0.0, 1.0 - to);
     return domainPoint(vw);
@@ -148,28 +156,43 @@ struct BlurTerm {
     Foot foot;
 };
 
-// The term of the chain whose reaches begin at `i`, which is moved past them.
-BlurTerm chainTerm(uint end, vec2 samples[SAMPLES], uint mask, inout uint i) {
-    const uint chain = features[reaches[i] & kReachFeature].chain;
+// How far beyond the reach of its chain a feature is from a point, in squares: below 0 wherever it may matter.
+// Wrong on the safe side (EdgeBlur::findNear).
+float excessOf(ivec4 ends, FeatureBounds bounds, float slack, vec2 at) {
+    const float limit = bounds.reach + bounds.bend + slack;
+    return nearestOnSegment(vec2(0.0), vec2(ends.zw - ends.xy) / 256.0, at - imagePoint(ends.xy)).y - limit * limit;
+}
+
+// The term of the chain whose reaches begin at `i`, which is moved past them; `middle` is a point within `slack`
+// of all samples.
+BlurTerm chainTerm(uint end, vec2 samples[SAMPLES], uint mask, vec2 middle, float slack, inout uint i) {
+    const uint chain = loadFeatureChain(loadReach(i) & kReachFeature);
     Foot feet[SAMPLES];
     uint nearest[SAMPLES];
     for (int s = 0; s < SAMPLES; ++s) {
-        feet[s] = Foot(0.0, (mask >> s & 1u) != 0u ? chains[chain].reach : -1e30, vec2(0.0));
+        feet[s] = Foot(0.0, 1e30, vec2(0.0));
         nearest[s] = kNoPatch;
     }
     for (; i < end; ++i) {
-        const uint f = reaches[i] & kReachFeature;
-        if (features[f].chain != chain) break;
-        const FeatureCurve c = featureCurve(f);
-        const vec2 from = imagePoint(features[f].p[0]);
-        for (int s = 0; s < SAMPLES; ++s)
-            if ((mask >> s & 1u) != 0u && findFoot(f, c, samples[s] - from, feet[s])) nearest[s] = reaches[i];
+        const uint reach = loadReach(i), f = reach & kReachFeature;
+        const uint flags = loadFeatureFlags(f);
+        if (loadFeatureChain(f) != chain) break;
+        const ivec4 ends = loadFeatureEnds(f);
+        const FeatureBounds bounds = loadFeatureBounds(f);
+        if (excessOf(ends, bounds, slack, middle) >= 0.0) continue;
+        const FeatureCurve c = featureCurve(f, ends);
+        const vec2 from = imagePoint(ends.xy);
+        for (int s = 0; s < SAMPLES; ++s) {
+            if ((mask >> s & 1u) == 0u) continue;
+            feet[s].distance = min(feet[s].distance, bounds.reach);
+            if (findFoot(f, c, bounds, (flags & kEven) != 0u, samples[s] - from, feet[s])) nearest[s] = reach;
+        }
     }
     BlurTerm term = BlurTerm(0.0, kNoPatch, feet[0]);
     float heaviest = 0.0;
     for (int s = 0; s < SAMPLES; ++s) {
         if (nearest[s] == kNoPatch) continue;
-        const float weight = blurWeight(nearest[s] & kReachFeature, chain, feet[s]);
+        const float weight = blurWeight(nearest[s] & kReachFeature, feet[s]);
         term.weight += weight;
         if (weight <= heaviest) continue;
         heaviest = weight;
@@ -189,20 +212,28 @@ BlurTerm chainTerm(uint end, vec2 samples[SAMPLES], uint mask, inout uint i) {
 
 vec4 jumpOf(BlurTerm term, uint p) {
     const uint f = term.reach & kReachFeature;
-    const int own = sideOf(f, term.reach, p, featureCurve(f), term.foot);
-    return evaluateSpline(features[f].patches[1 - own], featureDomainPoint(f, 1 - own, term.foot.t)) -
-           evaluateSpline(features[f].patches[own], featureDomainPoint(f, own, term.foot.t));
+    const uvec2 beside = loadFeaturePatches(f);
+    const int own = sideOf(f, term.reach, p, beside, term.foot);
+    const vec2 beyond = featureDomainPoint(f, 1 - own, term.foot.t), here = featureDomainPoint(f, own, term.foot.t);
+    return evaluateSpline(beside[1 - own], SplinePlace(beyond, vec3(0.0))) -
+           evaluateSpline(beside[own], SplinePlace(here, vec3(0.0)));
 }
 
 // The sum over the samples in `mask` of what blurred features add to the colour of patch p; samples in image
-// pixels from the view's corner.
-vec4 blurOf(uint p, vec2 samples[SAMPLES], uint mask) {
-    const ReachList list = reachLists[p];
-    if (list.count == 0u) return vec4(0.0);
+// pixels from the view's corner, none farther than `slack` from `middle`.
+vec4 blurOf(uint p, vec2 samples[SAMPLES], uint mask, vec2 middle, float slack) {
+    const uvec2 list = loadReachList(p);
+    const uint end = list.x + list.y;
+    uint first = list.x;
+    for (; first < end; ++first) {
+        const uint f = loadReach(first) & kReachFeature;
+        if (excessOf(loadFeatureEnds(f), loadFeatureBounds(f), slack, middle) < 0.0) break;
+    }
+    // The features of a chain that lie before are out of reach.
     BlurTerm terms[kMaxBlurTerms];
     int count = 0;
-    for (uint i = list.first, end = list.first + list.count; i < end;) {
-        const BlurTerm term = chainTerm(end, samples, mask, i);
+    for (uint i = first; i < end;) {
+        const BlurTerm term = chainTerm(end, samples, mask, middle, slack, i);
         if (term.weight <= 0.0) continue;
         int slot = count;
         if (count == kMaxBlurTerms) {

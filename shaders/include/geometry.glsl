@@ -9,17 +9,17 @@ dvec2 toGridExact(ivec2 p) {
     return (dvec2(p - view.origin) - dvec2(view.fraction)) * dvec2(view.gridPerUnit);
 }
 
-// Control point i of a halfedge's curve, from its origin.
-ivec2 sidePoint(uint halfedge, int i) {
-    return edges[halfedge >> 1].p[(halfedge & 1u) == 0u ? i : 3 - i];
-}
-
-void loadControlPoints(uint p, out ivec2 control[10]) {
+void loadControlPoints(PatchShape shape, out ivec2 control[10]) {
     for (int s = 0; s < 3; ++s) {
-        const uint halfedge = patches[p].sides[s];
-        for (int i = 0; i < 3; ++i) control[3 * s + i] = sidePoint(halfedge, i);
+        const uint halfedge = shape.sides[s];
+        ivec2 p[4];
+        loadEdge(halfedge >> 1, p);
+        const bool along = (halfedge & 1u) == 0u;
+        control[3 * s] = along ? p[0] : p[3];
+        control[3 * s + 1] = along ? p[1] : p[2];
+        control[3 * s + 2] = along ? p[2] : p[1];
     }
-    control[9] = patches[p].interior;
+    control[9] = shape.interior;
 }
 
 // Neither single precision nor an estimate of it in samples is worth much beyond this many samples.
@@ -41,6 +41,16 @@ dvec2 curvePoint(dvec2 p[4], double t) {
     precise const dvec2 point =
         s * s * s * p[0] + 3.0LF * s * s * t * p[1] + 3.0LF * s * t * t * p[2] + t * t * t * p[3];
     return point;
+}
+
+// The largest of the second differences of a patch along the three directions of its domain.
+float patchBend(vec2 b[10]) {
+    float bend = 0.0;
+    for (int s = 0; s < 3; ++s)
+        bend = max(bend, curveBend(vec2[4](b[3 * s], b[3 * s + 1], b[3 * s + 2], b[(3 * s + 3) % 9])));
+    bend = max(bend, length(b[8] - 2.0 * b[9] + b[4]));
+    bend = max(bend, length(b[2] - 2.0 * b[9] + b[7]));
+    return max(bend, length(b[1] - 2.0 * b[9] + b[5]));
 }
 
 vec2 patchPoint(vec2 p[10], vec2 vw) {

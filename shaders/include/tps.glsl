@@ -1,21 +1,33 @@
 // The colour function of a patch (core/mesh/COLOUR.md).
 
-// All channels at a point of the domain, in the mesh's colour basis.
-vec4 evaluateSpline(uint p, vec2 at) {
+// Where a spline is evaluated: the mean of some points of the domain, and their second moments about it (xx, yy,
+// xy), which are 0 for a single point.
+struct SplinePlace {
+    vec2 at;
+    vec3 spread;
+};
+
+// All channels, in the mesh's colour basis: the mean over the points of `place`, to second order. The mean of
+// phi(|x|) = q log(q) / 2, q = |x|^2, over points with moments C is near phi at q + trace C, plus
+// x' C x / (q + trace C); on the centre itself that is exact where the points are equally far from it.
+vec4 evaluateSpline(uint p, SplinePlace place) {
     countEvaluation();
-    const uint first = patches[p].firstTerm, terms = patches[p].terms;
-    const uint count = terms & 0xffffu, colourCount = terms >> 16;
-    vec4 value = patches[p].polynomial[0] + at.x * patches[p].polynomial[1] + at.y * patches[p].polynomial[2];
-    for (uint i = 0u; i < count; ++i) {
-        const vec2 off = at - splineTerms[first + i].centre;
-        const float q = dot(off, off);
-        // phi = s^2 log s = q log2(q) (log 2) / 2, and 0 at 0.
-        const float phi = q > 0.0 ? 0.34657359028 * q * log2(q) : 0.0;
-        value.x += phi * splineTerms[first + i].alpha[0];
-        if (i >= colourCount) continue;
-        value.y += phi * splineTerms[first + i].alpha[1];
-        value.z += phi * splineTerms[first + i].alpha[2];
-        value.w += phi * splineTerms[first + i].alpha[3];
+    const SplineTerms terms = loadTerms(p);
+    const vec2 at = place.at;
+    const float trace = place.spread.x + place.spread.y;
+    vec4 value = loadPolynomial(p, 0u) + at.x * loadPolynomial(p, 1u) + at.y * loadPolynomial(p, 2u);
+    for (uint i = 0u; i < terms.count; ++i) {
+        const vec4 term = loadTerm(terms.first + i);
+        const vec2 off = at - term.xy;
+        const float q = dot(off, off) + trace;
+        // 0 at 0, where log2 is not finite.
+        float phi = q > 0.0 ? 0.34657359028 * q * log2(q) : 0.0;
+#if SAMPLES > 1
+        const vec3 squares = vec3(off * off, 2.0 * off.x * off.y);
+        if (q > 0.0) phi += dot(place.spread, squares) / q;
+#endif
+        value.xy += phi * term.zw;
+        if (i < terms.others) value.zw += phi * loadTermRest(terms.first + i);
     }
     return value;
 }
