@@ -16,7 +16,7 @@ class VisibilityBuffer {
     void resize(int width, int height);
     // Makes it the framebuffer that is drawn to, without a patch anywhere.
     void begin() const;
-    GLuint texture() const { return mTexture.name(); }
+    const Texture& texture() const { return mTexture; }
     int width() const { return mTexture.width(); }
     int height() const { return mTexture.height(); }
 

@@ -1,7 +1,10 @@
 // See renderer.h.
 #include "render/renderer.h"
 
+#include <optional>
+
 #include "core/base/check.h"
+#include "render/compute_subdivision.h"
 #include "render/gl_objects.h"
 #include "render/gpu_layout.h"
 #include "render/lod_pass.h"
@@ -15,6 +18,7 @@ struct Renderer::State {
     LodPass lod;
     PatchPass patches;
     ResolvePass resolve;
+    std::optional<ComputeSubdivision> subdivision;  // made when it is first asked for
     PatchBuffers buffers;
     VisibilityBuffer visibility;
     VertexArray vertexArray = makeVertexArray();  // without attributes; core profiles want one bound
@@ -26,7 +30,7 @@ struct Renderer::State {
     GpuView block{};  // of the frame
 
     void prepare(const View& view, const DrawOptions& options, glm::ivec2 target);
-    void drawVisibility(const DrawOptions& options);
+    Result<void> drawVisibility(const DrawOptions& options);
 };
 
 Renderer::Renderer(std::unique_ptr<State> state) : mState(std::move(state)) {}
@@ -88,37 +92,50 @@ void Renderer::State::prepare(const View& view, const DrawOptions& options, glm:
     buffers.bind();
 }
 
-void Renderer::State::drawVisibility(const DrawOptions&) {
+Result<void> Renderer::State::drawVisibility(const DrawOptions& options) {
     visibility.begin();
-    if (buffers.patchCount() == 0) return;
-    patches.run(lod.run(block));
+    if (buffers.patchCount() == 0) return {};
+    if (!options.computeSubdivision) {
+        patches.run(lod.run(block));
+        return {};
+    }
+    if (!subdivision) {
+        auto made = ComputeSubdivision::create();
+        if (!made) return tl::unexpected(made.error());
+        subdivision = std::move(*made);
+    }
+    subdivision->run(visibility.texture(), buffers.patchCount());
+    return {};
 }
 
 namespace {
 
 // Draws a frame; `resolve` draws the colours from the visibility buffer.
 template <class State, class Resolve>
-void drawFrame(State& state, const View& view, const DrawOptions& options, Resolve&& resolve) {
-    if (view.width <= 0 || view.height <= 0) return;
+Result<void> drawFrame(State& state, const View& view, const DrawOptions& options, Resolve&& resolve) {
+    if (view.width <= 0 || view.height <= 0) return {};
     const StateScope scope;
     const auto viewport = scope.viewport();
     state.prepare(view, options, {viewport[0], viewport[1]});
-    state.drawVisibility(options);
+    if (auto drawn = state.drawVisibility(options); !drawn) return drawn;
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(scope.drawFramebuffer()));
     glViewport(viewport[0], viewport[1], view.width, view.height);
-    glBindTextureUnit(0, state.visibility.texture());
+    glBindTextureUnit(GLuint(Unit::Visibility), state.visibility.texture().name());
     resolve();
+    return {};
 }
 
 }  // namespace
 
-void Renderer::draw(const View& view, const DrawOptions& options) {
-    drawFrame(*mState, view, options, [&] { mState->resolve.run(options.samples); });
+Result<void> Renderer::draw(const View& view, const DrawOptions& options) {
+    return drawFrame(*mState, view, options, [&] { mState->resolve.run(options.samples); });
 }
 
 Result<EvaluationCounts> Renderer::drawCounted(const View& view, const DrawOptions& options) {
     Result<EvaluationCounts> counts;
-    drawFrame(*mState, view, options, [&] { counts = mState->resolve.runCounted(options.samples); });
+    const auto drawn =
+        drawFrame(*mState, view, options, [&] { counts = mState->resolve.runCounted(options.samples); });
+    if (!drawn) return tl::unexpected(drawn.error());
     return counts;
 }
 

@@ -43,7 +43,8 @@ class Renderer {
     // Draws over the viewport of the framebuffer that is bound for drawing, whose size is the view's, the
     // picture's top at the viewport's: values in the working space, premultiplied, not clamped by us, 0
     // outside the picture. Without blending.
-    void draw(const View& view, const DrawOptions& options = {});
+    // Internal, and nothing drawn, where the driver refuses what an option needs.
+    Result<void> draw(const View& view, const DrawOptions& options = {});
     // The same, and how many splines that took.
     Result<EvaluationCounts> drawCounted(const View& view, const DrawOptions& options = {});
 

@@ -43,7 +43,7 @@ void emitPieces(uint p, ivec2 lattice[10], float bend, uint depth) {
     uint path = 0u, level = 0u;
     for (;;) {
         vec2 corners[3];
-        pieceCorners(level << 28 | path, corners);
+        pieceCorners(level, path, corners);
         vec2 lo = vec2(1e30), hi = vec2(-1e30);
         for (int i = 0; i < 3; ++i) {
             const vec2 at = vec2(patchPoint(control, dvec2(corners[i])));

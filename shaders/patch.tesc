@@ -30,7 +30,7 @@ void main() {
     const uint insideBits = min(bits - min(bits, depth), kTessellatorBits);
 
     vec2 corners[3];
-    pieceCorners(piece.code, corners);
+    pieceCorners(depth, piece.code, corners);
     tPatch = piece.patchId;
     tSides = shape.sides;
     tExact = extent > kExactBeyond ? 1u : 0u;

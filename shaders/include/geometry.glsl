@@ -80,12 +80,12 @@ uint pieceDepth(uint code) {
     return code >> 28;
 }
 // The parameters (v, w) of a piece's corners: multiples of 2^-depth, exactly.
-void pieceCorners(uint code, out vec2 corners[3]) {
+void pieceCorners(uint depth, uint path, out vec2 corners[3]) {
     corners[0] = vec2(0.0, 0.0);
     corners[1] = vec2(1.0, 0.0);
     corners[2] = vec2(0.0, 1.0);
-    for (uint level = pieceDepth(code); level > 0u; --level) {
-        const uint child = (code >> (2u * (level - 1u))) & 3u;
+    for (uint level = depth; level > 0u; --level) {
+        const uint child = (path >> (2u * (level - 1u))) & 3u;
         const vec2 ab = 0.5 * (corners[0] + corners[1]), bc = 0.5 * (corners[1] + corners[2]),
                    ca = 0.5 * (corners[2] + corners[0]);
         if (child == 0u) {
