@@ -47,9 +47,8 @@ class EdgeBlur {
     void findNear(PatchId p, glm::dvec2 origin, const float* x, const float* y, size_t count,
                   float* excess) const;
 
-  private:
+    // What the index holds, for a renderer that computes terms by itself. Features lie chain after chain.
     static constexpr int kSegments = 8;
-    static constexpr uint32_t kNone = 0xffffffff;
     struct Box {
         glm::dvec2 lo, hi;
     };
@@ -93,6 +92,16 @@ class EdgeBlur {
         uint32_t feature = 0;
         uint8_t sides = 0;  // bit 0: from the left, bit 1: from the right
     };
+    std::span<const Feature> features() const { return mFeatures; }
+    std::span<const Chain> chains() const { return mChains; }
+    // Of patch p, in the order of features().
+    std::span<const Reach> reaches(PatchId p) const {
+        if (!inReach(p)) return {};
+        return std::span(mReaches).subspan(mFirst[p.index], mFirst[p.index + 1] - mFirst[p.index]);
+    }
+
+  private:
+    static constexpr uint32_t kNone = 0xffffffff;
     struct Foot {
         double t = 0;
         double distance = 0;
@@ -108,7 +117,7 @@ class EdgeBlur {
     static bool findFoot(const Feature& feature, glm::dvec2 at, Foot& foot);
     static int sideOf(const Feature& feature, const Reach& reach, PatchId p, glm::dvec2 at, const Foot& foot);
 
-    std::vector<Feature> mFeatures;  // chain after chain
+    std::vector<Feature> mFeatures;
     std::vector<Chain> mChains;
     std::vector<uint32_t> mFeatureOf;  // by edge id; kNone where the edge is no feature
     std::vector<uint32_t> mFirst;      // by patch id, into mReaches; empty where nothing is blurred
