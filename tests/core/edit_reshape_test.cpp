@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/edit/edge_edits.h"
+#include "core/edit/split_merge.h"
 #include "core/mesh/jacobian.h"
 #include "tests/support/edit_meshes.h"
 #include "tests/support/test_meshes.h"
@@ -116,8 +117,16 @@ TEST(ShapeDrag, TheBorderSlidesAndCornersStay) {
     EXPECT_TRUE(sameMesh(mesh, start));
 }
 
+// The scene with its features cut in two, which makes joins.
+PatchMesh joinedScene() {
+    PatchMesh mesh = scene();
+    for (uint32_t e = 0; e < scene().connectivity().edgeCapacity(); ++e)
+        if (mesh.curve(EdgeId(e)).feature) splitEdge(mesh, EdgeId(e), .5);
+    return mesh;
+}
+
 TEST(ShapeDrag, JoinsStaySmoothUnlessBroken) {
-    const PatchMesh& start = scene();
+    const PatchMesh start = joinedScene();
     ASSERT_FALSE(start.smoothJoins().empty());
     int turned = 0;
     for (const SmoothJoin& join : start.smoothJoins()) {
@@ -136,6 +145,23 @@ TEST(ShapeDrag, JoinsStaySmoothUnlessBroken) {
             const HalfedgeId other = HalfedgeMesh::halfedge(join.second);
             EXPECT_EQ(mesh.controlPoints(other), start.controlPoints(other));
         }
+    }
+    EXPECT_GT(turned, 3);
+}
+
+// Features of the default method are smooth without being known as joins.
+TEST(ShapeDrag, NearlyStraightFeaturesTurnTogether) {
+    PatchMesh start = joinedScene();
+    const std::vector<SmoothJoin> joins = start.smoothJoins();
+    start.setSmoothJoins({});
+    int turned = 0;
+    for (const SmoothJoin& join : joins) {
+        HalfedgeId h = HalfedgeMesh::halfedge(join.first);
+        if (start.connectivity().origin(h) != join.vertex) h = HalfedgeMesh::twin(h);
+        PatchMesh mesh = start;
+        if (ShapeDrag(start, {ControlPointRef::of(h)}).drag(mesh, {1, .7}).fraction < 1) continue;
+        EXPECT_TRUE(isSmooth(mesh, join));
+        ++turned;
     }
     EXPECT_GT(turned, 3);
 }
