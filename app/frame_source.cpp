@@ -1,13 +1,32 @@
 // See frame_source.h.
 #include "app/frame_source.h"
 
+#include <QPainter>
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
 
 namespace tessera {
 
 namespace {
 
 constexpr double kOverviewPx = 1024;
+
+Rect united(const Rect& a, const Rect& b) {
+    return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
+}
+
+// The pixels of a view that show any of `area`: a view of the same pixels.
+View partOf(const View& view, const Rect& area) {
+    const glm::dvec2 size(view.width, view.height);
+    const glm::dvec2 from =
+        glm::clamp(glm::floor((area.min - view.origin) * view.scale), glm::dvec2(0), size);
+    const glm::dvec2 to = glm::clamp(glm::ceil((area.max - view.origin) * view.scale), glm::dvec2(0), size);
+    return {.origin = view.origin + from / view.scale,
+            .scale = view.scale,
+            .width = int(to.x - from.x),
+            .height = int(to.y - from.y)};
+}
 
 }  // namespace
 
@@ -21,7 +40,17 @@ void FrameSource::setMesh(PatchMesh mesh) {
     ++mGeneration;
     mOverview.reset();
     mLatest.reset();
+    mDirty.reset();
+    mOverviewOld = false;
     mMesh = std::move(mesh);
+    startNext();
+}
+
+void FrameSource::updateMesh(PatchMesh mesh, const Rect& dirty) {
+    mMesh = std::move(mesh);
+    mDirty = mDirty ? united(*mDirty, dirty) : dirty;
+    mOverviewOld = true;
+    if (mJob && mRefining) mJob->stop();
     startNext();
 }
 
@@ -33,39 +62,57 @@ void FrameSource::request(const View& view) {
 }
 
 bool FrameSource::settled() const {
-    return mMesh.patchCount() == 0 ||
-           (mLatest && mWish && sameView(mLatest->view, *mWish) && mLatest->samples == kPictureSamples);
+    return mMesh.patchCount() == 0 || (mLatest && mWish && sameView(mLatest->view, *mWish) &&
+                                       mLatest->samples == kPictureSamples && !mDirty && !mOverviewOld);
 }
 
 void FrameSource::startNext() {
     if (mJob || mMesh.patchCount() == 0) return;
-    const uint64_t generation = mGeneration;
-    if (!mOverview) {
-        const double scale = std::min(1.0, kOverviewPx / std::max(mMesh.width(), mMesh.height()));
-        mRefining = false;
-        mJob =
-            startRenderJob(this, mMesh, wholePicture(mMesh, {scale, scale}), 1,
-                           [=, this](Result<Frame> frame) { deliver(true, generation, std::move(frame)); });
-        return;
-    }
+    const double scale = std::min(1.0, kOverviewPx / std::max(mMesh.width(), mMesh.height()));
+    const View whole = wholePicture(mMesh, {scale, scale});
+    mRefining = false;
+    if (!mOverview) return draw(whole, 1, &FrameSource::keepOverview);
     if (!mWish || mWish->width <= 0 || mWish->height <= 0 || settled()) return;
-    mRefining = mLatest && sameView(mLatest->view, *mWish);
-    mJob = startRenderJob(this, mMesh, *mWish, mRefining ? kPictureSamples : 1,
-                          [=, this](Result<Frame> frame) { deliver(false, generation, std::move(frame)); });
+    if (!mLatest || !sameView(mLatest->view, *mWish)) {
+        mDirty.reset();
+        return draw(*mWish, 1, &FrameSource::keepLatest);
+    }
+    if (mDirty) {
+        const View part = partOf(*mWish, *mDirty);
+        mDirty.reset();
+        if (part.width > 0 && part.height > 0) return draw(part, 1, &FrameSource::keepPart);
+    }
+    if (mOverviewOld && mLatest->samples == kPictureSamples) {
+        mOverviewOld = false;
+        return draw(whole, 1, &FrameSource::keepOverview);
+    }
+    mRefining = true;
+    draw(*mWish, kPictureSamples, &FrameSource::keepLatest);
 }
 
-void FrameSource::deliver(bool overview, uint64_t generation, Result<Frame> frame) {
-    if (generation != mGeneration) return;
-    mJob = nullptr;
-    if (frame) {
-        (overview ? mOverview : mLatest) = std::move(*frame);
-        emit frameReady();
-    } else if (frame.error().code != ErrorCode::Stopped) {
-        // Out of memory, in practice. The same wish would fail again: wait for another one.
-        mWish.reset();
-        return;
-    }
-    startNext();
+void FrameSource::draw(const View& view, int samples, void (FrameSource::*keep)(Frame)) {
+    const uint64_t generation = mGeneration;
+    mJob = startRenderJob(this, mMesh, view, samples, [=, this](Result<Frame> frame) {
+        if (generation != mGeneration) return;
+        mJob = nullptr;
+        if (frame) {
+            (this->*keep)(std::move(*frame));
+            emit frameReady();
+        } else if (frame.error().code != ErrorCode::Stopped) {
+            // Out of memory, in practice. The same wish would fail again: wait for another one.
+            mWish.reset();
+            return;
+        }
+        startNext();
+    });
+}
+
+void FrameSource::keepPart(Frame part) {
+    const glm::dvec2 offset = (part.view.origin - mLatest->view.origin) * part.view.scale;
+    QPainter painter(&mLatest->image);
+    painter.setCompositionMode(QPainter::CompositionMode_Source);
+    painter.drawImage(QPoint(int(std::lround(offset.x)), int(std::lround(offset.y))), part.image);
+    mLatest->samples = part.samples;
 }
 
 }  // namespace tessera

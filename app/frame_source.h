@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "app/jobs/render_job.h"
-#include "core/mesh/patch_mesh.h"
+#include "core/mesh/patch_query.h"
 
 namespace tessera {
 
@@ -22,6 +22,9 @@ class FrameSource : public QObject {
 
     // Forgets the frames and starts on those of `mesh`; one without patches has none.
     void setMesh(PatchMesh mesh);
+    // `mesh` looks like the one before but within `dirty` (image px): that part of the frames is drawn anew,
+    // the rest stays.
+    void updateMesh(PatchMesh mesh, const Rect& dirty);
     // What shall be shown; `view` lies within the picture. Cheap where it is the same as before.
     void request(const View& view);
 
@@ -35,7 +38,10 @@ class FrameSource : public QObject {
 
   private:
     void startNext();
-    void deliver(bool overview, uint64_t generation, Result<Frame> frame);
+    void draw(const View& view, int samples, void (FrameSource::*keep)(Frame));
+    void keepOverview(Frame frame) { mOverview = std::move(frame); }
+    void keepLatest(Frame frame) { mLatest = std::move(frame); }
+    void keepPart(Frame part);
 
     PatchMesh mMesh;
     uint64_t mGeneration = 0;  // of mMesh, so that a frame of an older one is dropped
@@ -44,6 +50,9 @@ class FrameSource : public QObject {
     std::optional<Frame> mLatest;
     Job* mJob = nullptr;
     bool mRefining = false;  // mJob draws at full quality
+    // What mLatest shows of an older mesh, and mJob does not draw; image px.
+    std::optional<Rect> mDirty;
+    bool mOverviewOld = false;
 };
 
 // Whether two views show the same pixels of the same picture.

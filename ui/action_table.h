@@ -6,6 +6,8 @@
 #include <array>
 
 #include "app/settings.h"
+#include "app/tools/tool.h"
+#include "ui/dialogs/key_presets.h"
 
 class QMenu;
 class QMenuBar;
@@ -15,32 +17,83 @@ namespace tessera {
 
 enum class ActionId {
     Open,
+    Paste,
+    Close,
     Save,
     SaveAs,
     Export,
+    ExportAgain,
+    Relink,
+    Preferences,
     Quit,
     Undo,
     Redo,
+    Copy,
+    SelectAll,
+    SelectNone,
+    InvertSelection,
+    GrowSelection,
+    ShrinkSelection,
+    SelectSimilar,
+    ResetColours,
+    ResetShape,
+    RefitColours,
+    Hide,
+    ShowAll,
+    Lock,
+    UnlockAll,
+    CutOut,
+    FillIn,
+    SplitPatches,
+    SplitCurves,
+    MergeCurves,
+    SnapToFeature,
+    MarkFeature,
+    UnmarkFeature,
     ZoomIn,
     ZoomOut,
     ZoomFit,
     Zoom100,
+    FitSelection,
+    PreviousZoom,
     ShowFeatures,
+    ShowBlur,
     ShowEdges,
     ShowControlPoints,
+    ShowHeatMap,
+    OutlineView,
     ShowOriginal,
+    Split,
+    XRay,
+    Rulers,
     HidePanels,
     FullScreen,
-    DarkTheme,
     Vectorize,
     Cancel,
+    ToolSelect,
+    ToolDirect,
+    ToolLasso,
+    ToolWand,
+    ToolEyedropper,
+    ToolBrush,
+    ToolDragColour,
+    ToolGradient,
+    ToolBlur,
+    ToolHand,
+    ToolZoom,
+    LargerBrush,
+    SmallerBrush,
+    CheatSheet,
     About,
     Count
 };
 
 constexpr size_t kActionCount = size_t(ActionId::Count);
 
-// The actions of one window, made from the table, with the keys that the user chose or else the table's.
+// The action that takes up a tool.
+ActionId actionOf(ToolId tool);
+
+// The actions of one window, made from the table. Keys are those that the user chose, or else the preset's.
 class ActionTable {
   public:
     ActionTable(QWidget* window, const Settings& settings);
@@ -48,6 +101,13 @@ class ActionTable {
     QAction* operator[](ActionId id) const { return mActions[size_t(id)]; }
     // Adds the menus in the table's order; `recent` follows Open.
     void fill(QMenuBar* bar, QMenu* recent) const;
+
+    // For the preferences and the sheet of keys: all actions, with the table's keys and the present ones.
+    QList<KeyRow> keyRows() const;
+    // Gives all actions the keys that the settings say now.
+    void applyKeys(const Settings& settings);
+    // Draws the icons in the palette's colours.
+    void tintIcons(const QPalette& palette);
 
   private:
     std::array<QAction*, kActionCount> mActions{};

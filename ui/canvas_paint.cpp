@@ -1,15 +1,21 @@
 // The painting half of the canvas, in device pixels throughout.
 #include <QPainter>
+#include <QPainterPath>
 #include <algorithm>
 #include <cmath>
 
 #include "ui/canvas_widget.h"
+#include "ui/tool_overlay_painter.h"
 
 namespace tessera {
 
 namespace {
 
 constexpr int kCheckPx = 8;
+constexpr double kGridFromScale = 8;
+constexpr double kLensPx = 110;
+const LineStyle kSelection{QColor(64, 169, 255), QColor(255, 255, 255, 235), 1.6, 3.8};
+const LineStyle kHighlight{QColor(255, 255, 255), QColor(0, 0, 0, 200), 1.8, 4.2};
 
 // Draws the part of `image`, which fills `area` (screen), that is within `clip`. Only that part: scaling a
 // whole picture a thousandfold leaves the range that QPainter computes in.
@@ -43,13 +49,74 @@ void CanvasWidget::paintEvent(QPaintEvent*) {
     paintGround(painter);
     if (!mSession) return;
     painter.setClipRect(mView.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect());
-    // A document is shown as its photo until its first frame is there.
-    if (showsPhoto() || (!mFrames.overview() && mSession->photo().pyramid))
-        paintPhoto(painter);
-    else
-        paintVector(painter);
+    paintPicture(painter);
+    if (!mHeatMap.isNull())
+        drawClipped(painter, mHeatMap, mView.toScreen(QRectF(QPointF(0, 0), pictureSize())), deviceRect());
+    if (mView.scale() >= kGridFromScale * ratio) paintPixelGrid(painter);
     painter.setClipping(false);
-    if (mSession->hasMesh()) mOverlay.paint(painter, mView, deviceRect(), ratio, mOverlays);
+    paintOverlays(painter);
+}
+
+void CanvasWidget::paintPicture(QPainter& painter) const {
+    // A document is shown as its photo until its first frame is there.
+    if (showsPhoto() || (!mFrames.overview() && hasOriginal())) return paintPhoto(painter);
+    paintVector(painter);
+    if (!hasOriginal()) return;
+    if (mSplit) paintSplit(painter);
+    if (mXRay && mCursor) paintLens(painter);
+}
+
+void CanvasWidget::paintSplit(QPainter& painter) const {
+    const double ratio = devicePixelRatioF(), x = std::round(mSplitAt * deviceSize().width());
+    painter.save();
+    painter.setClipRect(QRectF(0, 0, x, deviceSize().height()), Qt::IntersectClip);
+    paintPhoto(painter);
+    painter.restore();
+    painter.fillRect(QRectF(x - 1.5 * ratio, 0, 3 * ratio, deviceSize().height()), QColor(0, 0, 0, 140));
+    painter.fillRect(QRectF(x - .5 * ratio, 0, ratio, deviceSize().height()), Qt::white);
+}
+
+void CanvasWidget::paintLens(QPainter& painter) const {
+    const double ratio = devicePixelRatioF(), radius = kLensPx * ratio;
+    const QRectF lens(mCursor->x() - radius, mCursor->y() - radius, 2 * radius, 2 * radius);
+    painter.save();
+    QPainterPath circle;
+    circle.addEllipse(lens);
+    painter.setClipPath(circle, Qt::IntersectClip);
+    paintPhoto(painter);
+    painter.restore();
+    painter.save();
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setPen(QPen(QColor(0, 0, 0, 150), 3 * ratio));
+    painter.drawEllipse(lens);
+    painter.setPen(QPen(Qt::white, ratio));
+    painter.drawEllipse(lens);
+    painter.restore();
+}
+
+void CanvasWidget::paintPixelGrid(QPainter& painter) const {
+    const QRectF part = visiblePart();
+    std::vector<QLineF> lines;
+    const QRectF area = mView.toScreen(part);
+    for (double x = std::ceil(part.left()); x <= part.right(); ++x) {
+        const double at = std::round(mView.toScreen(QPointF(x, 0)).x()) + .5;
+        lines.emplace_back(at, area.top(), at, area.bottom());
+    }
+    for (double y = std::ceil(part.top()); y <= part.bottom(); ++y) {
+        const double at = std::round(mView.toScreen(QPointF(0, y)).y()) + .5;
+        lines.emplace_back(area.left(), at, area.right(), at);
+    }
+    painter.setPen(QColor(128, 128, 128, 70));
+    painter.drawLines(lines.data(), int(lines.size()));
+}
+
+void CanvasWidget::paintOverlays(QPainter& painter) const {
+    if (!mSession->hasMesh()) return;
+    const double ratio = devicePixelRatioF();
+    mOverlay.paint(painter, mView, deviceRect(), ratio, mOverlays);
+    mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mHighlightOutline, kHighlight);
+    mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mSelectionOutline, kSelection);
+    if (mTools) paintToolOverlay(painter, mTools->overlay(), mOverlay, mMesh, mView, deviceRect(), ratio);
 }
 
 void CanvasWidget::paintGround(QPainter& painter) {

@@ -1,21 +1,56 @@
-// See canvas_widget.h. Painting is in canvas_paint.cpp.
+// See canvas_widget.h. Painting is in canvas_paint.cpp, pointer and keys in canvas_input.cpp.
 #include "ui/canvas_widget.h"
 
-#include <QKeyEvent>
-#include <QMouseEvent>
-#include <QNativeGestureEvent>
-#include <QWheelEvent>
+#include <algorithm>
 #include <cmath>
+
+#include "app/mesh_damage.h"
+#include "core/edit/select.h"
 
 namespace tessera {
 
 namespace {
 
 constexpr double kFitMarginPx = 24;
-// One notch of a wheel: 15 degrees, in eighths.
-constexpr double kNotch = 120;
-constexpr double kZoomPerNotch = 1.2;
-constexpr double kScrollPxPerNotch = 80;
+// Changes of the zoom that follow each other within this time are one.
+constexpr int kOneZoomMs = 700;
+
+std::vector<EdgeId> outlineEdges(const PatchMesh& mesh, const PatchSet& set) {
+    std::vector<EdgeId> edges;
+    for (const auto& loop : outline(mesh, set))
+        for (const HalfedgeId h : loop) edges.push_back(HalfedgeMesh::edge(h));
+    return edges;
+}
+
+void appendEdgesAround(const HalfedgeMesh& mesh, VertexId v, std::vector<EdgeId>& edges) {
+    const HalfedgeId first = mesh.halfedge(v);
+    HalfedgeId h = first;
+    do {
+        edges.push_back(HalfedgeMesh::edge(h));
+        h = mesh.rotate(h);
+    } while (h != first);
+}
+
+QCursor cursorOf(ToolCursor cursor) {
+    switch (cursor) {
+        case ToolCursor::Cross:
+            return Qt::CrossCursor;
+        case ToolCursor::OpenHand:
+            return Qt::OpenHandCursor;
+        case ToolCursor::ClosedHand:
+            return Qt::ClosedHandCursor;
+        case ToolCursor::ZoomIn:
+        case ToolCursor::ZoomOut:
+            return Qt::SizeAllCursor;
+        case ToolCursor::Eyedropper:
+            return Qt::CrossCursor;
+        case ToolCursor::None:
+            return Qt::BlankCursor;
+        case ToolCursor::Arrow:
+            break;
+    }
+    return Qt::ArrowCursor;
+}
 
 }  // namespace
 
@@ -28,27 +63,84 @@ CanvasWidget::CanvasWidget(QWidget* parent) : QWidget(parent), mColours(canvasCo
     connect(&mFrames, &FrameSource::frameReady, this, [this] {
         update();
         reportCursor();
+        emit overviewChanged();
     });
 }
 
 void CanvasWidget::setSession(DocumentSession* session) {
-    if (mSession) mSession->disconnect(this);
+    if (mSession) {
+        mSession->disconnect(this);
+        mSession->selection().disconnect(this);
+    }
     mSession = session;
     mPeeking = false;
-    if (mSession)
-        connect(mSession, &DocumentSession::changed, this, [this](const Change& change) {
-            if (change.mesh()) reloadMesh();
-        });
+    if (mSession) connect(mSession, &DocumentSession::changed, this, &CanvasWidget::follow);
+    if (mSession) connect(&mSession->selection(), &Selection::changed, this, &CanvasWidget::outlineSelection);
     reloadMesh();
     fit();
 }
 
 void CanvasWidget::reloadMesh() {
-    mFrames.setMesh(mSession ? mSession->document().mesh : PatchMesh());
-    mOverlay = mSession ? OverlayPainter(mSession->document().mesh) : OverlayPainter();
+    mMesh = mSession ? mSession->document().mesh : PatchMesh();
+    mFrames.setMesh(mMesh);
+    mOverlay = OverlayPainter(mMesh);
+    mHighlightOutline.clear();
+    mHeatMap = {};
+    outlineSelection();
     requestFrame();
     update();
     reportCursor();
+}
+
+void CanvasWidget::follow(const Change& change) {
+    if (change.photo) update();
+    if (!change.mesh()) return;
+    if (change.replaced) return reloadMesh();
+    const PatchMesh& mesh = mSession->document().mesh;
+    mFrames.updateMesh(mesh, damagedArea(mMesh, mesh, change.touched));
+    mMesh = mesh;
+    if (change.touched.topology) {
+        mOverlay = OverlayPainter(mMesh);
+        mHighlightOutline.clear();
+        outlineSelection();
+    } else {
+        std::vector<EdgeId> edges = change.touched.edges;
+        for (const VertexId v : change.touched.vertices) appendEdgesAround(mMesh.connectivity(), v, edges);
+        mOverlay.update(mMesh, edges);
+    }
+    update();
+}
+
+void CanvasWidget::outlineSelection() {
+    mSelectionOutline = mSession && mSession->hasMesh() ? outlineEdges(mMesh, mSession->selection().patches())
+                                                        : std::vector<EdgeId>();
+    update();
+}
+
+void CanvasWidget::setHighlight(const PatchSet& patches) {
+    mHighlightOutline = outlineEdges(mMesh, patches);
+    update();
+}
+
+void CanvasWidget::setHeatMap(const QImage& map) {
+    mHeatMap = map;
+    update();
+}
+
+QImage CanvasWidget::overviewImage() const {
+    if (!mSession) return {};
+    if (mFrames.overview()) return mFrames.overview()->image;
+    return hasOriginal() ? mSession->photo().pyramid->levelFor(.1) : QImage();
+}
+
+void CanvasWidget::setTools(ToolManager* tools) {
+    mTools = tools;
+    connect(mTools, &ToolManager::overlayChanged, this, [this] {
+        updateCursor();
+        update();
+    });
+    connect(mTools, &ToolManager::toolChanged, this, &CanvasWidget::updateCursor);
+    connect(mTools, &ToolManager::viewRequested, this, &CanvasWidget::changeViewAsAsked);
 }
 
 void CanvasWidget::setTheme(Theme theme) {
@@ -61,7 +153,7 @@ QSizeF CanvasWidget::pictureSize() const {
 }
 
 bool CanvasWidget::showsPhoto() const {
-    if (!mSession || !mSession->photo().pyramid) return false;
+    if (!hasOriginal()) return false;
     return !mSession->hasMesh() || mShowOriginal || mPeeking;
 }
 
@@ -69,6 +161,16 @@ void CanvasWidget::setShowOriginal(bool on) {
     mShowOriginal = on;
     update();
     reportCursor();
+}
+
+void CanvasWidget::setSplit(bool on) {
+    mSplit = on;
+    update();
+}
+
+void CanvasWidget::setXRay(bool on) {
+    mXRay = on;
+    update();
 }
 
 void CanvasWidget::setOverlays(const OverlayOptions& options) {
@@ -93,7 +195,58 @@ void CanvasWidget::fit() {
     mFitted = true;
 }
 
+void CanvasWidget::showRect(const QRectF& image) {
+    if (!mSession || image.isEmpty()) return;
+    const double margin = kFitMarginPx * devicePixelRatioF();
+    const double scale = std::min((deviceSize().width() - 2 * margin) / image.width(),
+                                  (deviceSize().height() - 2 * margin) / image.height());
+    ViewTransform view = mView;
+    view.setScaleAt(deviceRect().center(), scale);
+    view.panBy(deviceRect().center() - view.toScreen(image.center()));
+    changeView(view);
+}
+
+void CanvasWidget::centreOn(QPointF image) {
+    ViewTransform view = mView;
+    view.panBy(deviceRect().center() - view.toScreen(image));
+    view.keepInView(pictureSize(), deviceSize());
+    changeView(view);
+}
+
+void CanvasWidget::previousZoom() {
+    const ViewTransform now = mView;
+    mSinceZoom.invalidate();
+    changeView(mViewBefore);
+    mViewBefore = now;
+}
+
+QRectF CanvasWidget::visiblePart() const {
+    return QRectF(mView.toImage(deviceRect().topLeft()), mView.toImage(deviceRect().bottomRight())) &
+           QRectF(QPointF(0, 0), pictureSize());
+}
+
+void CanvasWidget::changeViewAsAsked(const ViewRequest& request) {
+    if (const auto* pan = std::get_if<PanBy>(&request)) {
+        ViewTransform view = mView;
+        view.panBy(QPointF(pan->offset.x, pan->offset.y) * mView.scale());
+        view.keepInView(pictureSize(), deviceSize());
+        changeView(view);
+    } else if (const auto* step = std::get_if<ZoomStep>(&request)) {
+        ViewTransform view = mView;
+        view.setScaleAt(mView.toScreen(QPointF(step->at.x, step->at.y)),
+                        ViewTransform::nextScale(mView.scale(), step->in));
+        changeView(view);
+    } else {
+        const Rect& rect = std::get<ShowRect>(request).rect;
+        showRect(QRectF(QPointF(rect.min.x, rect.min.y), QPointF(rect.max.x, rect.max.y)).normalized());
+    }
+}
+
 void CanvasWidget::changeView(const ViewTransform& view) {
+    if (view.scale() != mView.scale()) {
+        if (!mSinceZoom.isValid() || mSinceZoom.elapsed() > kOneZoomMs) mViewBefore = mView;
+        mSinceZoom.start();
+    }
     mFitted = false;
     mLaidOut = deviceSize();
     mView = view;
@@ -128,109 +281,15 @@ void CanvasWidget::resizeEvent(QResizeEvent*) {
     changeView(view);
 }
 
-bool CanvasWidget::event(QEvent* event) {
-    if (event->type() != QEvent::NativeGesture) return QWidget::event(event);
-    const auto* gesture = static_cast<QNativeGestureEvent*>(event);
-    if (gesture->gestureType() != Qt::ZoomNativeGesture || !mSession) return QWidget::event(event);
-    ViewTransform view = mView;
-    view.zoomAt(gesture->position() * devicePixelRatioF(), 1 + gesture->value());
-    changeView(view);
-    return true;
-}
-
-void CanvasWidget::wheelEvent(QWheelEvent* event) {
-    event->accept();
-    if (!mSession) return;
-    ViewTransform view = mView;
-    const QPointF notches = QPointF(event->angleDelta()) / kNotch;
-    if (event->modifiers() & Qt::ControlModifier) {
-        view.zoomAt(event->position() * devicePixelRatioF(), std::pow(kZoomPerNotch, notches.y()));
-    } else {
-        // Touchpads say pixels, wheels say notches. Shift turns a wheel sideways.
-        QPointF step =
-            event->pixelDelta().isNull() ? notches * kScrollPxPerNotch : QPointF(event->pixelDelta());
-        if (event->modifiers() & Qt::ShiftModifier) step = {step.x() + step.y(), 0};
-        view.panBy(step * devicePixelRatioF());
-        view.keepInView(pictureSize(), deviceSize());
-    }
-    changeView(view);
-}
-
-void CanvasWidget::mousePressEvent(QMouseEvent* event) {
-    const bool pan = event->button() == Qt::MiddleButton || (event->button() == Qt::LeftButton && mSpace);
-    if (!pan || !mSession) return;
-    mPanning = true;
-    mCursor = event->position() * devicePixelRatioF();
-    updateCursor();
-}
-
-void CanvasWidget::mouseMoveEvent(QMouseEvent* event) {
-    const QPointF position = event->position() * devicePixelRatioF();
-    if (mPanning && mCursor) {
-        ViewTransform view = mView;
-        view.panBy(position - *mCursor);
-        view.keepInView(pictureSize(), deviceSize());
-        mCursor = position;
-        changeView(view);
-        return;
-    }
-    mCursor = position;
-    reportCursor();
-}
-
-void CanvasWidget::mouseReleaseEvent(QMouseEvent* event) {
-    if (event->button() != Qt::MiddleButton && event->button() != Qt::LeftButton) return;
-    mPanning = false;
-    updateCursor();
-}
-
-void CanvasWidget::leaveEvent(QEvent*) {
-    mCursor.reset();
-    reportCursor();
-}
-
-void CanvasWidget::keyPressEvent(QKeyEvent* event) {
-    if (event->key() == Qt::Key_O && event->modifiers() == Qt::NoModifier) {
-        mPeeking = true;
-        update();
-        reportCursor();
-    } else if (event->key() == Qt::Key_Space) {
-        mSpace = true;
-        updateCursor();
-    } else {
-        QWidget::keyPressEvent(event);
-    }
-}
-
-void CanvasWidget::keyReleaseEvent(QKeyEvent* event) {
-    // A held key repeats as pairs of press and release on X11.
-    if (event->isAutoRepeat()) return;
-    if (event->key() == Qt::Key_O) {
-        mPeeking = false;
-        update();
-        reportCursor();
-    } else if (event->key() == Qt::Key_Space) {
-        mSpace = false;
-        updateCursor();
-    } else {
-        QWidget::keyReleaseEvent(event);
-    }
-}
-
-void CanvasWidget::focusOutEvent(QFocusEvent*) {
-    // The releases will go elsewhere.
-    mPeeking = mSpace = mPanning = false;
-    updateCursor();
-    update();
-}
-
 void CanvasWidget::updateCursor() {
     if (mPanning)
         setCursor(Qt::ClosedHandCursor);
     else if (mSpace)
         setCursor(Qt::OpenHandCursor);
+    else if (mDraggingSplit || (mCursor && overSplitLine(*mCursor)))
+        setCursor(Qt::SplitHCursor);
     else
-        unsetCursor();
+        setCursor(cursorOf(mTools && mSession ? mTools->cursor() : ToolCursor::Arrow));
 }
 
 void CanvasWidget::reportCursor() {

@@ -1,12 +1,15 @@
-// The canvas: shows the picture at any zoom, with overlays, and turns wheel, mouse and keys into views.
+// The canvas: shows the picture at any zoom, with overlays, and turns wheel, mouse and keys into views and
+// into what tools understand.
 #pragma once
 
+#include <QElapsedTimer>
 #include <QWidget>
 #include <optional>
 
 #include "app/document_session.h"
 #include "app/frame_source.h"
 #include "app/settings.h"
+#include "app/tools/tool_manager.h"
 #include "ui/overlay_painter.h"
 #include "ui/theme.h"
 #include "ui/view_transform.h"
@@ -25,6 +28,8 @@ class CanvasWidget : public QWidget {
     // next call.
     void setSession(DocumentSession* session);
     void setTheme(Theme theme);
+    // Whose tools get what pointer and keys do here; outlives the canvas.
+    void setTools(ToolManager* tools);
 
     const ViewTransform& view() const { return mView; }
     QPointF toImage(QPointF position) const { return mView.toImage(position * devicePixelRatioF()); }
@@ -34,19 +39,40 @@ class CanvasWidget : public QWidget {
     void zoomStep(bool larger);
     void zoomTo(double scale);
     void fit();
+    // Makes a part of the picture (image px) fill the canvas.
+    void showRect(const QRectF& image);
+    // Back to the zoom before the last change of it; a second time, forth again.
+    void previousZoom();
+    void centreOn(QPointF image);
+    // The part of the picture that is in view, in image px.
+    QRectF visiblePart() const;
 
     void setOverlays(const OverlayOptions& options);
     size_t featureCount() const { return mOverlay.featureCount(); }
     // Shows the photo instead of the vector image for as long as it is on. Holding O does the same.
     void setShowOriginal(bool on);
+    // The photo left of a line that can be dragged, the vector image right of it.
+    void setSplit(bool on);
+    // The photo in a lens at the pointer.
+    void setXRay(bool on);
+    // A picture of the size of the document's, painted over it; null for none.
+    void setHeatMap(const QImage& map);
+    // Patches that a panel points at.
+    void setHighlight(const PatchSet& patches);
+    // What is drawn of the whole picture, small; null before there is anything.
+    QImage overviewImage() const;
     bool showsPhoto() const;
     // Whether what is on the screen is the view at its full quality.
     bool settled() const { return showsPhoto() || mFrames.settled(); }
+    bool hasOriginal() const { return mSession && mSession->photo().pyramid; }
 
   signals:
     void viewChanged();
     // The image point under the cursor and the colour shown there; none where it is outside the picture.
     void cursorMoved(std::optional<QPointF> image, QColor colour);
+    // What overviewImage() returns is another one.
+    void overviewChanged();
+    void contextMenuWanted(QPoint globalPosition);
 
   protected:
     void paintEvent(QPaintEvent* event) override;
@@ -56,7 +82,9 @@ class CanvasWidget : public QWidget {
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
     void leaveEvent(QEvent* event) override;
+    void contextMenuEvent(QContextMenuEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
     void keyReleaseEvent(QKeyEvent* event) override;
     void focusOutEvent(QFocusEvent* event) override;
@@ -67,6 +95,16 @@ class CanvasWidget : public QWidget {
     QSizeF pictureSize() const;
 
     void reloadMesh();
+    void follow(const Change& change);
+    void outlineSelection();
+    ToolEvent toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const;
+    ToolKey toolKey(const QKeyEvent& event) const;
+    void changeViewAsAsked(const ViewRequest& request);
+    bool overSplitLine(QPointF devicePosition) const;
+    void setPeeking(bool on);
+    void setSpace(bool on);
+    bool dragsView(const QMouseEvent& event) const;
+    void dragView(QPointF position);
     void changeView(const ViewTransform& view);
     void requestFrame();
     void updateCursor();
@@ -74,22 +112,39 @@ class CanvasWidget : public QWidget {
     QColor shownColour(QPointF image) const;
 
     void paintGround(QPainter& painter);
+    void paintPicture(QPainter& painter) const;
     void paintPhoto(QPainter& painter) const;
+    void paintSplit(QPainter& painter) const;
+    void paintLens(QPainter& painter) const;
+    void paintPixelGrid(QPainter& painter) const;
+    void paintOverlays(QPainter& painter) const;
     void paintVector(QPainter& painter) const;
     void paintFrame(QPainter& painter, const Frame& frame) const;
 
     DocumentSession* mSession = nullptr;
+    ToolManager* mTools = nullptr;
+    PatchMesh mMesh;  // as the frames and overlays show it
     FrameSource mFrames;
     OverlayPainter mOverlay;
     OverlayOptions mOverlays;
     CanvasColours mColours;
+    std::vector<EdgeId> mSelectionOutline;
+    std::vector<EdgeId> mHighlightOutline;
+    QImage mHeatMap;
     ViewTransform mView;
-    QSizeF mLaidOut;      // device size for which mView was made
-    bool mFitted = true;  // the view follows the window until the user zooms or pans
+    ViewTransform mViewBefore;  // the zoom that previousZoom() goes to
+    QElapsedTimer mSinceZoom;   // steps of a wheel in quick succession are one change of the zoom
+    QSizeF mLaidOut;            // device size for which mView was made
+    bool mFitted = true;        // the view follows the window until the user zooms or pans
     bool mShowOriginal = false;
     bool mPeeking = false;  // O is held
     bool mSpace = false;    // Space is held
     bool mPanning = false;
+    bool mPressed = false;  // a tool has been sent a press
+    bool mXRay = false;
+    bool mSplit = false;
+    bool mDraggingSplit = false;
+    double mSplitAt = .5;            // share of the canvas's width
     std::optional<QPointF> mCursor;  // device pixels
 };
 

@@ -1,144 +1,145 @@
-// See main_window.h. What asks for files is in main_window_files.cpp.
+// See main_window.h. How it is put together is in main_window_layout.cpp, what asks for files in
+// main_window_files.cpp.
 #include "ui/main_window.h"
 
 #include <QApplication>
-#include <QDockWidget>
 #include <QFileInfo>
-#include <QLabel>
-#include <QMenuBar>
+#include <QMenu>
 #include <QMessageBox>
-#include <QPushButton>
-#include <QScreen>
-#include <QVBoxLayout>
+#include <QTabBar>
 
 #include "ui/action_table.h"
 #include "ui/canvas_widget.h"
+#include "ui/dialogs/cheat_sheet.h"
+#include "ui/dialogs/preferences_dialog.h"
+#include "ui/dialogs/recovery_dialog.h"
 #include "ui/message_bar.h"
+#include "ui/panels/history_panel.h"
+#include "ui/panels/navigator.h"
+#include "ui/panels/palette_panel.h"
+#include "ui/panels/recolour_panel.h"
+#include "ui/panels/selection_panel.h"
+#include "ui/ruler.h"
+#include "ui/session_actions.h"
+#include "ui/start_page.h"
 #include "ui/status_bar.h"
 #include "ui/theme.h"
+#include "ui/tool_bars.h"
 #include "ui/vectorize_panel.h"
 
 namespace tessera {
 
 namespace {
 
-constexpr QSize kFirstSize(1320, 840);
+constexpr double kBrushStep = 1.2;
+constexpr double kLeastBrushPx = .5, kMostBrushPx = 2000;
 
 }  // namespace
 
-MainWindow::MainWindow() : mActions(std::make_unique<ActionTable>(this, mSettings)) {
+MainWindow::MainWindow()
+    : mSwatches(SwatchStore::defaultPath()),
+      mActions(std::make_unique<ActionTable>(this, mSettings)),
+      mAutosave(mWorkspace, mRecovery) {
     setAcceptDrops(true);
     setContextMenuPolicy(Qt::NoContextMenu);
     buildLayout();
     connectActions();
+    connectViewActions();
     connectWorkspace();
+    connectCanvas();
+    connectPanels();
     restoreWindow();
+    applySettings();
     showSession();
     mCanvas->setFocus();
 }
 
 MainWindow::~MainWindow() {
-    // The canvas must not look at a session that goes with the workspace before it.
+    // None of these must look at a session that goes with the workspace before them.
+    mWorkspace.disconnect(this);
+    mTools.setSession(nullptr);
+    mHeatMap.setSession(nullptr);
     mCanvas->setSession(nullptr);
-}
-
-void MainWindow::buildLayout() {
-    auto* centre = new QWidget;
-    auto* column = new QVBoxLayout(centre);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(0);
-    column->addWidget(mMessages = new MessageBar);
-    column->addWidget(mCanvas = new CanvasWidget, 1);
-    auto* middle = new QVBoxLayout(mCanvas);
-    middle->addWidget(mWelcome = makeWelcome(), 0, Qt::AlignCenter);
-    setCentralWidget(centre);
-
-    mPanel = new VectorizePanel(mSettings, *mActions);
-    mDock = new QDockWidget(tr("Vectorize"));
-    mDock->setObjectName("vectorizeDock");
-    mDock->setWidget(mPanel);
-    mDock->setAllowedAreas(Qt::LeftDockWidgetArea | Qt::RightDockWidgetArea);
-    mDock->setFeatures(QDockWidget::DockWidgetMovable);
-    addDockWidget(Qt::RightDockWidgetArea, mDock);
-
-    setStatusBar(mStatus = new StatusBar);
-    mRecent = new QMenu(tr("Open &Recent"), this);
-    mActions->fill(menuBar(), mRecent);
-    connect(mRecent, &QMenu::aboutToShow, this, &MainWindow::fillRecentMenu);
-}
-
-QWidget* MainWindow::makeWelcome() {
-    auto* welcome = new QWidget;
-    auto* column = new QVBoxLayout(welcome);
-    column->setSpacing(12);
-    auto* icon = new QLabel;
-    icon->setPixmap(windowIcon().pixmap(96, 96));
-    icon->setAlignment(Qt::AlignCenter);
-    auto* title = new QLabel(tr("Drop a photo here"));
-    QFont large = title->font();
-    large.setPointSizeF(large.pointSizeF() * 1.7);
-    title->setFont(large);
-    title->setAlignment(Qt::AlignCenter);
-    auto* hint =
-        new QLabel(tr("or open one; Tessera turns it into curved patches that stay sharp at any size."));
-    hint->setProperty("role", "dim");
-    hint->setAlignment(Qt::AlignCenter);
-    auto* open = new QPushButton(tr("Open a Photo…"));
-    open->setProperty("role", "primary");
-    open->setMinimumHeight(36);
-    open->setFocusPolicy(Qt::TabFocus);
-    connect(open, &QPushButton::clicked, (*mActions)[ActionId::Open], &QAction::trigger);
-    for (QWidget* widget : std::initializer_list<QWidget*>{icon, title, hint}) column->addWidget(widget);
-    column->addSpacing(8);
-    column->addWidget(open, 0, Qt::AlignCenter);
-    return welcome;
 }
 
 void MainWindow::connectActions() {
     const ActionTable& a = *mActions;
     const auto on = [&](ActionId id, auto slot) { connect(a[id], &QAction::triggered, this, slot); };
-    const auto onToggled = [&](ActionId id, auto slot) { connect(a[id], &QAction::toggled, this, slot); };
     on(ActionId::Open, [this] { chooseAndOpen(); });
+    on(ActionId::Paste, [this] { paste(); });
+    on(ActionId::Copy, [this] { copy(); });
+    on(ActionId::Close, [this] { closeSession(mWorkspace.session()); });
     on(ActionId::Save, [this] { save(); });
     on(ActionId::SaveAs, [this] { chooseAndSave(); });
     on(ActionId::Export, [this] { chooseAndExport(); });
+    on(ActionId::ExportAgain, [this] { exportAgain(); });
+    on(ActionId::Relink, [this] { chooseAndRelink(); });
+    on(ActionId::Preferences, [this] { showPreferences(); });
     on(ActionId::Quit, [this] { close(); });
     on(ActionId::Undo, [this] { mWorkspace.session()->history().undo(); });
     on(ActionId::Redo, [this] { mWorkspace.session()->history().redo(); });
+    on(ActionId::Vectorize, [this] { startVectorize(); });
+    on(ActionId::Cancel, [this] { mWorkspace.cancel(); });
+    on(ActionId::LargerBrush, [this] { changeBrush(kBrushStep); });
+    on(ActionId::SmallerBrush, [this] { changeBrush(1 / kBrushStep); });
+    on(ActionId::CheatSheet, [this] { showCheatSheet(); });
+    on(ActionId::About, [this] { showAbout(); });
+    connectSessionActions(
+        a, this, [this] { return mWorkspace.session(); }, mTools, [this](const QString& text) { say(text); });
+}
+
+void MainWindow::connectViewActions() {
+    const ActionTable& a = *mActions;
+    const auto on = [&](ActionId id, auto slot) { connect(a[id], &QAction::triggered, this, slot); };
+    const auto onToggled = [&](ActionId id, auto slot) { connect(a[id], &QAction::toggled, this, slot); };
     on(ActionId::ZoomIn, [this] { mCanvas->zoomStep(true); });
     on(ActionId::ZoomOut, [this] { mCanvas->zoomStep(false); });
     on(ActionId::ZoomFit, [this] { mCanvas->fit(); });
     on(ActionId::Zoom100, [this] { mCanvas->zoomTo(1); });
-    on(ActionId::Vectorize, [this] { startVectorize(); });
-    on(ActionId::Cancel, [this] { mWorkspace.cancel(); });
-    on(ActionId::About, [this] { showAbout(); });
-    for (const ActionId id : {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints})
+    on(ActionId::FitSelection, [this] { fitSelection(); });
+    on(ActionId::PreviousZoom, [this] { mCanvas->previousZoom(); });
+    on(ActionId::OutlineView, [this] { cycleOutlineView(); });
+    for (const ActionId id :
+         {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowBlur})
         onToggled(id, [this] { updateOverlays(); });
+    onToggled(ActionId::ShowHeatMap, [this](bool shown) { mHeatMap.setWanted(shown); });
     onToggled(ActionId::ShowOriginal, [this](bool shown) { mCanvas->setShowOriginal(shown); });
+    onToggled(ActionId::Split, [this](bool split) { mCanvas->setSplit(split); });
+    onToggled(ActionId::XRay, [this](bool shown) { mCanvas->setXRay(shown); });
+    onToggled(ActionId::Rulers, [this](bool shown) {
+        for (QWidget* widget : {static_cast<QWidget*>(mTopRuler), static_cast<QWidget*>(mLeftRuler), mCorner})
+            widget->setVisible(shown);
+    });
     onToggled(ActionId::HidePanels, [this](bool hidden) { setPanelsHidden(hidden); });
     onToggled(ActionId::FullScreen, [this](bool full) { full ? showFullScreen() : showNormal(); });
-    onToggled(ActionId::DarkTheme, [this](bool dark) {
-        const Theme theme = dark ? Theme::Dark : Theme::Light;
-        mSettings.setTheme(theme);
-        applyTheme(*qApp, theme);
-        mCanvas->setTheme(theme);
-    });
     // Tab moves the focus within the panel; on the canvas, where there is nothing to move to, it hides the
-    // panel.
+    // panels.
     QAction* hide = a[ActionId::HidePanels];
     removeAction(hide);
     hide->setShortcutContext(Qt::WidgetShortcut);
     mCanvas->addAction(hide);
-    a[ActionId::DarkTheme]->setChecked(mSettings.theme() == Theme::Dark);
-    mCanvas->setTheme(mSettings.theme());
+    emit a[ActionId::Rulers]->toggled(false);
 }
 
 void MainWindow::connectWorkspace() {
     connect(&mWorkspace, &Workspace::sessionChanged, this, &MainWindow::adoptSession);
+    for (const auto signal : {&Workspace::sessionAdded, &Workspace::sessionClosed, &Workspace::saved})
+        connect(&mWorkspace, signal, this, &MainWindow::showTabs, Qt::QueuedConnection);
+    connect(&mWorkspace, &Workspace::sessionAdded, this, [this](DocumentSession* session) {
+        connect(session, &DocumentSession::changed, this, [this, session](const Change& change) {
+            if (change.preview) return;
+            showTabs();
+            if (session == mWorkspace.session()) showSession();
+        });
+        connect(session, &DocumentSession::editingChanged, this, &MainWindow::updateActions);
+        connect(&session->history(), &History::changed, this, &MainWindow::updateActions);
+        connect(&session->selection(), &Selection::changed, this, &MainWindow::updateSelectionActions);
+    });
     connect(&mWorkspace, &Workspace::said, mMessages, &MessageBar::show);
     connect(&mWorkspace, &Workspace::fileUsed, this, [this](const QString& path) {
         mSettings.addRecentFile(path);
         mSettings.setFolder(QFileInfo(path).absolutePath());
+        mStart->setRecentFiles(mSettings.recentFiles());
     });
     connect(&mWorkspace, &Workspace::jobChanged, this, [this] {
         mStatus->showJob(mWorkspace.currentJob());
@@ -146,73 +147,171 @@ void MainWindow::connectWorkspace() {
     });
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::zoomClicked, this, [this] { mCanvas->zoomTo(1); });
-    connect(mCanvas, &CanvasWidget::viewChanged, this,
-            [this] { mStatus->showZoom(mCanvas->view().scale()); });
+    connect(mTabs, &QTabBar::currentChanged, this, [this](int tab) {
+        if (tab >= 0 && tab < mWorkspace.sessions().size()) mWorkspace.setCurrent(mWorkspace.sessions()[tab]);
+    });
+    connect(mTabs, &QTabBar::tabCloseRequested, this,
+            [this](int tab) { closeSession(mWorkspace.sessions().value(tab)); });
+    connect(mTabs, &QTabBar::tabMoved, &mWorkspace, &Workspace::moveSession);
+}
+
+void MainWindow::connectCanvas() {
+    mCanvas->setTools(&mTools);
+    connect(mCanvas, &CanvasWidget::viewChanged, this, &MainWindow::showView);
     connect(mCanvas, &CanvasWidget::cursorMoved, mStatus, &StatusBar::showCursor);
+    connect(mCanvas, &CanvasWidget::cursorMoved, this, [this](std::optional<QPointF> image) {
+        mTopRuler->setPointer(image ? std::optional(image->x()) : std::nullopt);
+        mLeftRuler->setPointer(image ? std::optional(image->y()) : std::nullopt);
+    });
+    connect(mCanvas, &CanvasWidget::overviewChanged, this,
+            [this] { mNavigator->setPicture(mCanvas->overviewImage()); });
+    connect(mCanvas, &CanvasWidget::contextMenuWanted, this, &MainWindow::showContextMenu);
+    connect(&mHeatMap, &HeatMap::ready, mCanvas, &CanvasWidget::setHeatMap);
+    connect(&mTools, &ToolManager::said, this, &MainWindow::say);
+    // Keys of a tool are for the canvas, wherever the pointer took the tool up.
+    connect(&mTools, &ToolManager::toolChanged, mCanvas, [this] { mCanvas->setFocus(); });
+}
+
+void MainWindow::connectPanels() {
     connect(mPanel, &VectorizePanel::editingDone, this, [this] { mCanvas->setFocus(); });
+    mRecolour->setToolOptions(mTools);
+    mPalette->setToolOptions(mTools);
+    mSelection->setToolOptions(mTools);
+    connect(mRecolour, &RecolourPanel::said, this, &MainWindow::say);
+    connect(mPalette, &PalettePanel::said, this, &MainWindow::say);
+    connect(mSelection, &SelectionPanel::said, this, &MainWindow::say);
+    connect(mPalette, &PalettePanel::highlighted, mCanvas, &CanvasWidget::setHighlight);
+    connect(mNavigator, &Navigator::moveRequested, mCanvas, &CanvasWidget::centreOn);
+    connect(mNavigator, &Navigator::zoomRequested, mCanvas, &CanvasWidget::zoomTo);
+    connect(mRecent, &QMenu::aboutToShow, this, &MainWindow::fillRecentMenu);
+    mStart->setRecentFiles(mSettings.recentFiles());
+    connect(mStart, &StartPage::openRequested, this, &MainWindow::open);
+    connect(mStart, &StartPage::openDialogRequested, this, [this] { chooseAndOpen(); });
+    connect(mStart, &StartPage::pasteRequested, this, [this] { paste(); });
+    connect(mStart, &StartPage::sampleRequested, this, [this] {
+        const QString sample = StartPage::sampleFile();
+        if (sample.isEmpty()) return say(tr("The sample picture could not be copied to the cache folder."));
+        open(sample);
+    });
+    connect(mStart, &StartPage::clearRecentRequested, this, [this] {
+        mSettings.clearRecentFiles();
+        mStart->setRecentFiles({});
+    });
 }
 
 void MainWindow::adoptSession() {
     DocumentSession* session = mWorkspace.session();
-    if (!session) {
-        mCanvas->setSession(nullptr);
-        return showSession();
-    }
-    // This window shows one document; whether the one before may go was asked before.
-    const QList<DocumentSession*> open = mWorkspace.sessions();
-    for (DocumentSession* other : open)
-        if (other != session)
-            mWorkspace.close(other, [](auto&) { return CloseAnswer{CloseAnswer::Kind::Discard}; });
-    connect(&session->history(), &History::changed, this, &MainWindow::updateActions);
     mMessages->hide();
-    (*mActions)[ActionId::ShowOriginal]->setChecked(false);
+    for (const ActionId id : {ActionId::ShowOriginal, ActionId::ShowHeatMap})
+        (*mActions)[id]->setChecked(false);
+    mTools.setSession(session);
     mCanvas->setSession(session);
-    connect(session, &DocumentSession::changed, this, &MainWindow::showSession);
-    if (session->hasMesh()) mPanel->showSettings(session->document().settings);
+    mHeatMap.setSession(session);
+    mRecolour->setSession(session);
+    mPalette->setSession(session);
+    mSelection->setSession(session);
+    mHistory->setSession(session);
+    mNavigator->setPicture(mCanvas->overviewImage());
+    if (session && session->hasMesh()) mPanel->showSettings(session->document().settings);
+    showTabs();
     showSession();
     mCanvas->setFocus();
-    const bool vectorize = !session->hasMesh() && (mVectorizeWhenOpen || mSettings.vectorizeOnOpen());
+    if (!session) return;
+    const bool vectorize = !session->hasMesh() && session->revision() == 1 &&
+                           (mVectorizeWhenOpen || mSettings.vectorizeOnOpen());
     mVectorizeWhenOpen = false;
     if (vectorize) startVectorize();
 }
 
 void MainWindow::showSession() {
     const DocumentSession* session = mWorkspace.session();
-    mWelcome->setVisible(!session);
+    mStart->setVisible(!session);
     mStatus->showCounts(session, mCanvas->featureCount());
-    mStatus->showZoom(mCanvas->view().scale());
     mPanel->showSession(session, mCanvas->featureCount());
+    showView();
     updateActions();
     updateTitle();
+}
+
+void MainWindow::showTabs() {
+    const QSignalBlocker quiet(mTabs);
+    const auto& sessions = mWorkspace.sessions();
+    while (mTabs->count() > sessions.size()) mTabs->removeTab(mTabs->count() - 1);
+    for (int i = 0; i < sessions.size(); ++i) {
+        if (i == mTabs->count()) mTabs->addTab({});
+        const DocumentSession* session = sessions[i];
+        mTabs->setTabText(i, session->displayName() + (session->modified() ? " •" : ""));
+        mTabs->setTabToolTip(i, session->path().isEmpty() ? session->photoPath() : session->path());
+    }
+    if (mWorkspace.session()) mTabs->setCurrentIndex(int(sessions.indexOf(mWorkspace.session())));
+    mTabs->setVisible(sessions.size() > 1);
+}
+
+void MainWindow::showView() {
+    const double scale = mCanvas->view().scale();
+    mStatus->showZoom(scale);
+    mTopRuler->setView(mCanvas->view());
+    mLeftRuler->setView(mCanvas->view());
+    const DocumentSession* session = mWorkspace.session();
+    mNavigator->setScale(scale);
+    mNavigator->setVisibleRect(mCanvas->visiblePart(),
+                               session ? QSizeF(session->width(), session->height()) : QSizeF());
 }
 
 void MainWindow::updateActions() {
     const DocumentSession* session = mWorkspace.session();
     const bool hasMesh = session && session->hasMesh();
+    const bool hasPhoto = session && session->photo().pyramid;
     const ActionTable& a = *mActions;
-    const bool saving = mWorkspace.running(JobKind::Save);
-    a[ActionId::Save]->setEnabled(hasMesh && !saving);
-    a[ActionId::SaveAs]->setEnabled(hasMesh && !saving);
-    a[ActionId::Export]->setEnabled(hasMesh && !mWorkspace.running(JobKind::Export));
-    a[ActionId::Vectorize]->setEnabled(mWorkspace.canVectorize());
-    a[ActionId::Cancel]->setEnabled(mWorkspace.currentJob());
-    for (const ActionId id : {ActionId::ZoomIn, ActionId::ZoomOut, ActionId::ZoomFit, ActionId::Zoom100})
-        a[id]->setEnabled(session);
-    for (const ActionId id : {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints})
-        a[id]->setEnabled(hasMesh);
-    a[ActionId::ShowOriginal]->setEnabled(hasMesh && session->photo().pyramid);
+    const auto enable = [&](std::initializer_list<ActionId> ids, bool on) {
+        for (const ActionId id : ids) a[id]->setEnabled(on);
+    };
+    enable({ActionId::Save, ActionId::SaveAs}, hasMesh && !mWorkspace.running(JobKind::Save));
+    enable({ActionId::Export}, hasMesh && !mWorkspace.running(JobKind::Export));
+    enable({ActionId::ExportAgain}, hasMesh && mLastExport && !mWorkspace.running(JobKind::Export));
+    enable({ActionId::Vectorize}, mWorkspace.canVectorize());
+    enable({ActionId::Cancel}, mWorkspace.currentJob());
+    enable({ActionId::Close, ActionId::ZoomIn, ActionId::ZoomOut, ActionId::ZoomFit, ActionId::Zoom100,
+            ActionId::PreviousZoom},
+           session);
+    enable({ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowBlur,
+            ActionId::OutlineView, ActionId::Copy, ActionId::Relink},
+           hasMesh);
+    enable({ActionId::ShowOriginal, ActionId::Split, ActionId::XRay, ActionId::ShowHeatMap},
+           hasMesh && hasPhoto);
     const History* history = session ? &session->history() : nullptr;
-    a[ActionId::Undo]->setEnabled(history && history->canUndo());
-    a[ActionId::Redo]->setEnabled(history && history->canRedo());
+    const bool resting = session && !session->editing();
+    enable({ActionId::Undo}, resting && history->canUndo());
+    enable({ActionId::Redo}, resting && history->canRedo());
     a[ActionId::Undo]->setText(tr("&Undo %1").arg(history ? history->undoText() : QString()).trimmed());
     a[ActionId::Redo]->setText(tr("&Redo %1").arg(history ? history->redoText() : QString()).trimmed());
+    for (int i = 0; i < int(ToolId::Count); ++i)
+        a[actionOf(ToolId(i))]->setEnabled(session && mTools.usable(ToolId(i)));
+    updateSelectionActions();
+}
+
+void MainWindow::updateSelectionActions() {
+    const DocumentSession* session = mWorkspace.session();
+    enableSessionActions(*mActions, session);
+    (*mActions)[ActionId::FitSelection]->setEnabled(session && !session->selection().empty());
+    mStatus->showSelection(session ? session->selection().patches().size() : 0);
 }
 
 void MainWindow::updateOverlays() {
     const ActionTable& a = *mActions;
-    mCanvas->setOverlays({.features = a[ActionId::ShowFeatures]->isChecked(),
+    const bool byBlur = a[ActionId::ShowBlur]->isChecked();
+    mCanvas->setOverlays({.features = byBlur || a[ActionId::ShowFeatures]->isChecked(),
+                          .featuresByBlur = byBlur,
                           .edges = a[ActionId::ShowEdges]->isChecked(),
                           .controlPoints = a[ActionId::ShowControlPoints]->isChecked()});
+}
+
+void MainWindow::cycleOutlineView() {
+    const ActionTable& a = *mActions;
+    const std::array steps{ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints};
+    for (const ActionId id : steps)
+        if (!a[id]->isChecked()) return a[id]->setChecked(true);
+    for (const ActionId id : steps) a[id]->setChecked(false);
 }
 
 void MainWindow::updateTitle() {
@@ -221,14 +320,92 @@ void MainWindow::updateTitle() {
     setWindowModified(session && session->modified());
 }
 
-void MainWindow::setPanelsHidden(bool hidden) {
-    mDock->setVisible(!hidden);
-}
-
 void MainWindow::startVectorize() {
     mMessages->hide();
     mCanvas->setFocus();
     mWorkspace.vectorize(mPanel->settings(mWorkspace.session()));
+}
+
+void MainWindow::fitSelection() {
+    const DocumentSession& session = *mWorkspace.session();
+    const PatchMesh& mesh = session.document().mesh;
+    QRectF area;
+    const auto include = [&](const Rect& box) {
+        area |= QRectF(QPointF(box.min.x, box.min.y), QPointF(box.max.x, box.max.y));
+    };
+    for (const PatchId p : session.selection().patches()) include(controlBounds(mesh, p));
+    for (const EdgeId e : session.selection().curves())
+        for (const HalfedgeId h : {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))})
+            if (const PatchId p = mesh.connectivity().face(h); p.valid()) include(controlBounds(mesh, p));
+    mCanvas->showRect(area);
+}
+
+void MainWindow::changeBrush(double factor) {
+    ToolOptions options = mTools.options();
+    options.brushRadiusPx = std::clamp(options.brushRadiusPx * factor, kLeastBrushPx, kMostBrushPx);
+    mTools.setOptions(options);
+}
+
+void MainWindow::showContextMenu(QPoint at) {
+    QMenu menu;
+    const auto add = [&](std::initializer_list<ActionId> ids) {
+        for (const ActionId id : ids)
+            if ((*mActions)[id]->isEnabled()) menu.addAction((*mActions)[id]);
+        menu.addSeparator();
+    };
+    add({ActionId::SelectAll, ActionId::SelectNone, ActionId::GrowSelection, ActionId::SelectSimilar});
+    add({ActionId::Hide, ActionId::Lock, ActionId::CutOut, ActionId::FillIn});
+    add({ActionId::SplitPatches, ActionId::SplitCurves, ActionId::MergeCurves, ActionId::SnapToFeature,
+         ActionId::MarkFeature, ActionId::UnmarkFeature});
+    add({ActionId::ResetColours, ActionId::ResetShape, ActionId::RefitColours});
+    menu.exec(at);
+}
+
+void MainWindow::say(const QString& text) {
+    mMessages->show({.text = text});
+}
+
+void MainWindow::applySettings() {
+    applyTheme(*qApp, mSettings.theme());
+    mCanvas->setTheme(mSettings.theme());
+    mActions->applyKeys(mSettings);
+    mAutosave.setInterval(mSettings.autosaveSeconds());
+    mWorkspace.setHistoryLimit(mSettings.historyBytes());
+    Job::setThreadLimit(mSettings.threads());
+}
+
+void MainWindow::changeEvent(QEvent* event) {
+    if (event->type() == QEvent::PaletteChange && mActions) mActions->tintIcons(palette());
+    if (event->type() == QEvent::ActivationChange && !isActiveWindow()) mTools.cancel();
+    QMainWindow::changeEvent(event);
+}
+
+void MainWindow::showPreferences() {
+    PreferencesDialog dialog(mActions->keyRows(), mSettings, this);
+    connect(&dialog, &PreferencesDialog::applied, this, &MainWindow::applySettings);
+    dialog.exec();
+}
+
+void MainWindow::showCheatSheet() {
+    CheatSheet(mActions->keyRows(), (*mActions)[ActionId::CheatSheet]->shortcut(), this).exec();
+}
+
+void MainWindow::offerRecovery() {
+    const auto slots_ = mRecovery.leftBehind();
+    std::vector<RecoveryInfo> found;
+    std::vector<std::shared_ptr<RecoverySlot>> whole;
+    for (const auto& slot : slots_)
+        if (const auto info = slot->info()) {
+            found.push_back(*info);
+            whole.push_back(slot);
+        }
+    if (found.empty()) return;
+    RecoveryDialog dialog(found, this);
+    dialog.exec();
+    for (const size_t i : dialog.chosen()) {
+        if (dialog.answer() == RecoveryDialog::Answer::Recover) mAutosave.recover(whole[i]);
+        if (dialog.answer() == RecoveryDialog::Answer::Discard) whole[i]->forget();
+    }
 }
 
 void MainWindow::showAbout() {
@@ -237,28 +414,6 @@ void MainWindow::showAbout() {
         tr("<h3>Tessera %1</h3><p>Turns photographs into vector images made of curved triangular "
            "patches, and lets you recolour and reshape them.</p>")
             .arg(QApplication::applicationVersion()));
-}
-
-void MainWindow::restoreWindow() {
-    if (!restoreGeometry(mSettings.blob("geometry"))) resize(kFirstSize.boundedTo(screen()->availableSize()));
-    restoreState(mSettings.blob("state"));
-    const QByteArray shown = mSettings.blob("overlays");
-    const ActionTable& a = *mActions;
-    a[ActionId::ShowFeatures]->setChecked(shown.contains('f'));
-    a[ActionId::ShowEdges]->setChecked(shown.contains('e'));
-    a[ActionId::ShowControlPoints]->setChecked(shown.contains('c'));
-    mDock->show();
-}
-
-void MainWindow::storeWindow() {
-    mSettings.setBlob("geometry", saveGeometry());
-    mSettings.setBlob("state", saveState());
-    const ActionTable& a = *mActions;
-    QByteArray shown;
-    if (a[ActionId::ShowFeatures]->isChecked()) shown += 'f';
-    if (a[ActionId::ShowEdges]->isChecked()) shown += 'e';
-    if (a[ActionId::ShowControlPoints]->isChecked()) shown += 'c';
-    mSettings.setBlob("overlays", shown);
 }
 
 }  // namespace tessera

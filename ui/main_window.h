@@ -1,21 +1,35 @@
-// The window: canvas, panel, bars and menus around one workspace. It asks and shows; the workspace does.
+// The window: canvas, bars, panels and menus around one workspace. It asks and shows; the workspace does.
 #pragma once
 
 #include <QMainWindow>
 #include <functional>
 
+#include "app/autosave.h"
+#include "app/heat_map.h"
 #include "app/settings.h"
+#include "app/swatch_store.h"
+#include "app/tools/tool_manager.h"
 #include "app/workspace.h"
 
 class QDockWidget;
 class QMenu;
+class QTabBar;
 
 namespace tessera {
 
 class ActionTable;
 class CanvasWidget;
+class HistoryPanel;
 class MessageBar;
+class Navigator;
+class PalettePanel;
+class RecolourPanel;
+class Ruler;
+class SelectionPanel;
+class StartPage;
 class StatusBar;
+class ToolBar;
+class ToolOptionsBar;
 class VectorizePanel;
 
 class MainWindow : public QMainWindow {
@@ -25,62 +39,110 @@ class MainWindow : public QMainWindow {
     MainWindow();
     ~MainWindow() override;
 
-    // Opens a file as if it had been chosen; asks first where changes would be lost.
+    // Opens a file as if it had been chosen.
     void open(const QString& path);
     // Vectorizes with the panel's settings, now or as soon as the file that is being opened is there.
     void vectorizeWhenOpen();
     // Saves to `path`, a .tessera file, without asking.
     void saveTo(const QString& path, std::function<void()> then = {});
+    // Offers the documents that a run before this one could not save, if there are any.
+    void offerRecovery();
 
     Workspace& workspace() { return mWorkspace; }
+    ToolManager& tools() { return mTools; }
     CanvasWidget& canvas() { return *mCanvas; }
     MessageBar& messages() { return *mMessages; }
     StatusBar& status() { return *mStatus; }
     VectorizePanel& panel() { return *mPanel; }
+    QTabBar& tabs() { return *mTabs; }
     const ActionTable& actions() const { return *mActions; }
 
   protected:
     void closeEvent(QCloseEvent* event) override;
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
+    void changeEvent(QEvent* event) override;
 
   private:
+    // main_window_layout.cpp
     void buildLayout();
-    QWidget* makeWelcome();
-    void connectActions();
-    void connectWorkspace();
+    QWidget* makeCentre();
+    void makeDocks();
+    QDockWidget* addDock(const QString& name, const QString& title, QWidget* content, bool scrolls);
     void restoreWindow();
     void storeWindow();
-
-    void chooseAndOpen();
-    void save(std::function<void()> then = {});
-    void chooseAndSave(std::function<void()> then = {});
-    void chooseAndExport();
-    // Runs `then` at once where nothing would be lost, else after asking and, perhaps, saving.
-    void withChangesKept(std::function<void()> then);
-    void startVectorize();
-    void showAbout();
-
-    void adoptSession();
-    void showSession();
-    void updateActions();
-    void updateOverlays();
-    void updateTitle();
-    void fillRecentMenu();
     void setPanelsHidden(bool hidden);
 
+    // main_window.cpp
+    void connectActions();
+    void connectViewActions();
+    void connectWorkspace();
+    void connectCanvas();
+    void connectPanels();
+    void adoptSession();
+    void showSession();
+    void showTabs();
+    void updateActions();
+    void updateSelectionActions();
+    void updateOverlays();
+    void cycleOutlineView();
+    void updateTitle();
+    void showView();
+    void startVectorize();
+    void fitSelection();
+    void changeBrush(double factor);
+    void showContextMenu(QPoint at);
+    void say(const QString& text);
+    void applySettings();
+    void showPreferences();
+    void showCheatSheet();
+    void showAbout();
+
+    // main_window_files.cpp
+    void chooseAndOpen();
+    void paste();
+    void copy();
+    void save(std::function<void()> then = {});
+    void chooseAndSave(std::function<void()> then = {});
+    // A .tessera path; empty where the user chooses none.
+    QString askForPath(const DocumentSession& session);
+    void chooseAndExport();
+    void exportAgain();
+    void chooseAndRelink();
+    void closeSession(DocumentSession* session);
+    CloseAnswer askToClose(DocumentSession& session);
+    void fillRecentMenu();
+
     Settings mSettings;
+    SwatchStore mSwatches;
     std::unique_ptr<ActionTable> mActions;
+    ToolManager mTools;
+    HeatMap mHeatMap;
     CanvasWidget* mCanvas = nullptr;
-    QWidget* mWelcome = nullptr;
+    StartPage* mStart = nullptr;
+    QTabBar* mTabs = nullptr;
+    Ruler* mTopRuler = nullptr;
+    Ruler* mLeftRuler = nullptr;
+    QWidget* mCorner = nullptr;  // between the rulers
     MessageBar* mMessages = nullptr;
     StatusBar* mStatus = nullptr;
+    ToolBar* mToolBar = nullptr;
+    ToolOptionsBar* mToolOptions = nullptr;
     VectorizePanel* mPanel = nullptr;
-    QDockWidget* mDock = nullptr;
+    RecolourPanel* mRecolour = nullptr;
+    PalettePanel* mPalette = nullptr;
+    SelectionPanel* mSelection = nullptr;
+    HistoryPanel* mHistory = nullptr;
+    Navigator* mNavigator = nullptr;
+    QList<QDockWidget*> mDocks;
+    QList<QDockWidget*> mHiddenDocks;  // by Hide Panels, to be shown again
     QMenu* mRecent = nullptr;
+    std::optional<ExportRequest> mLastExport;
     bool mVectorizeWhenOpen = false;
     bool mClosing = false;
-    Workspace mWorkspace;  // last: it goes first, with the jobs that report to the rest
+    RecoveryStore mRecovery;
+    Workspace mWorkspace;  // after all that its jobs report to: it goes before them
+    Autosave mAutosave;
 };
 
 }  // namespace tessera

@@ -1,27 +1,32 @@
-// The half of the main window that deals with files: choosing, dropping, and never losing changes unasked.
+// The part of the main window that deals with files: choosing, dropping, and never losing changes unasked.
+#include <QClipboard>
 #include <QCloseEvent>
 #include <QDragEnterEvent>
 #include <QDropEvent>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QGuiApplication>
 #include <QMenu>
 #include <QMessageBox>
 #include <QMimeData>
 
 #include "app/file_service.h"
-#include "ui/export_dialog.h"
+#include "app/selection_picture.h"
+#include "ui/dialogs/export_dialog.h"
 #include "ui/main_window.h"
 #include "ui/message_bar.h"
+#include "ui/start_page.h"
 
 namespace tessera {
 
 namespace {
 
-// The first local file of what is being dragged; empty where there is none.
-QString droppedFile(const QMimeData* data) {
+// The local files of what is being dragged.
+QStringList droppedFiles(const QMimeData* data) {
+    QStringList files;
     for (const QUrl& url : data->urls())
-        if (url.isLocalFile()) return url.toLocalFile();
-    return {};
+        if (url.isLocalFile()) files.append(url.toLocalFile());
+    return files;
 }
 
 QString withSuffix(const QString& path, const QString& suffix) {
@@ -31,7 +36,7 @@ QString withSuffix(const QString& path, const QString& suffix) {
 }  // namespace
 
 void MainWindow::open(const QString& path) {
-    withChangesKept([this, path] { mWorkspace.open(path); });
+    mWorkspace.open(path);
 }
 
 void MainWindow::vectorizeWhenOpen() {
@@ -60,64 +65,105 @@ void MainWindow::save(std::function<void()> then) {
 void MainWindow::chooseAndSave(std::function<void()> then) {
     const DocumentSession* session = mWorkspace.session();
     if (!session || !session->hasMesh()) return;
-    const QString path = QFileDialog::getSaveFileName(this, tr("Save As"), session->suggestedPath("tessera"),
+    const QString path = askForPath(*session);
+    if (!path.isEmpty()) saveTo(path, std::move(then));
+}
+
+QString MainWindow::askForPath(const DocumentSession& session) {
+    const QString path = QFileDialog::getSaveFileName(this, tr("Save As"), session.suggestedPath("tessera"),
                                                       tr("Tessera documents (*.tessera)"));
-    if (!path.isEmpty()) saveTo(withSuffix(path, "tessera"), std::move(then));
+    return path.isEmpty() ? path : withSuffix(path, "tessera");
 }
 
 void MainWindow::chooseAndExport() {
     const DocumentSession* session = mWorkspace.session();
     if (!session || !session->hasMesh()) return;
-    ExportDialog dialog({session->width(), session->height()}, this);
+    ExportDialog dialog({session->width(), session->height()}, session->document().source.iccProfile,
+                        mSettings, this);
     if (dialog.exec() != QDialog::Accepted) return;
     ExportRequest request = dialog.request();
     const QString suggested = session->suggestedPath(dialog.suffix());
     const QString path = QFileDialog::getSaveFileName(this, tr("Export Picture"), suggested, dialog.filter());
     if (path.isEmpty()) return;
     request.path = withSuffix(path, dialog.suffix());
+    mLastExport = request;
     mWorkspace.exportPicture(request);
 }
 
-void MainWindow::withChangesKept(std::function<void()> then) {
+void MainWindow::exportAgain() {
+    if (mLastExport) mWorkspace.exportPicture(*mLastExport);
+}
+
+void MainWindow::chooseAndRelink() {
+    const QString path =
+        QFileDialog::getOpenFileName(this, tr("Find the Photo"), mSettings.folder(), openFilter());
+    if (!path.isEmpty()) mWorkspace.relinkPhoto(path);
+}
+
+void MainWindow::paste() {
+    const QImage picture = QGuiApplication::clipboard()->image();
+    if (picture.isNull()) return say(tr("There is no picture in the clipboard."));
+    mWorkspace.paste(picture);
+}
+
+void MainWindow::copy() {
     const DocumentSession* session = mWorkspace.session();
-    if (!session || !session->modified()) return then();
+    if (!session || !session->hasMesh()) return;
+    QGuiApplication::clipboard()->setImage(selectionPicture(*session));
+    say(session->selection().patches().empty() ? tr("The picture is in the clipboard.")
+                                               : tr("The selected patches are in the clipboard."));
+}
+
+void MainWindow::closeSession(DocumentSession* session) {
+    if (session) mWorkspace.close(session, [this](DocumentSession& asked) { return askToClose(asked); });
+}
+
+CloseAnswer MainWindow::askToClose(DocumentSession& session) {
     QMessageBox box(QMessageBox::Question, tr("Unsaved Changes"),
-                    tr("“%1” has changes that are not saved.").arg(session->displayName()),
+                    tr("“%1” has changes that are not saved.").arg(session.displayName()),
                     QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
     box.setInformativeText(tr("Without saving, they will be lost."));
     box.setDefaultButton(QMessageBox::Save);
+    CloseAnswer answer{.embedPhoto = mSettings.embedPhoto()};
     switch (box.exec()) {
         case QMessageBox::Save:
-            return save(std::move(then));
+            answer.path = session.path();
+            if (answer.path.isEmpty()) answer.path = askForPath(session);
+            if (!answer.path.isEmpty()) answer.kind = CloseAnswer::Kind::Save;
+            break;
         case QMessageBox::Discard:
-            return then();
+            answer.kind = CloseAnswer::Kind::Discard;
+            break;
         default:
-            return;
+            break;
     }
+    return answer;
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-    if (mClosing || !mWorkspace.session() || !mWorkspace.session()->modified()) {
+    if (mClosing || mWorkspace.sessions().isEmpty()) {
         storeWindow();
         return event->accept();
     }
     event->ignore();
-    withChangesKept([this] {
-        mClosing = true;
-        // Not from here: a window that is being asked to close cannot be closed.
-        QMetaObject::invokeMethod(this, &QWidget::close, Qt::QueuedConnection);
-    });
+    mWorkspace.closeAll([this](DocumentSession& asked) { return askToClose(asked); },
+                        [this](bool closed) {
+                            if (!closed) return;
+                            mClosing = true;
+                            // Not from here: a window that is being asked to close cannot be closed.
+                            QMetaObject::invokeMethod(this, &QWidget::close, Qt::QueuedConnection);
+                        });
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-    if (!droppedFile(event->mimeData()).isEmpty()) event->acceptProposedAction();
+    if (!droppedFiles(event->mimeData()).isEmpty()) event->acceptProposedAction();
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
-    const QString path = droppedFile(event->mimeData());
-    if (path.isEmpty()) return;
+    const QStringList paths = droppedFiles(event->mimeData());
+    if (paths.isEmpty()) return;
     event->acceptProposedAction();
-    open(path);
+    for (const QString& path : paths) open(path);
 }
 
 void MainWindow::fillRecentMenu() {
@@ -134,7 +180,10 @@ void MainWindow::fillRecentMenu() {
     }
     mRecent->addSeparator();
     connect(mRecent->addAction(tr("Clear the List")), &QAction::triggered, this,
-            [this] { mSettings.clearRecentFiles(); });
+            [this] {
+                mSettings.clearRecentFiles();
+                mStart->setRecentFiles({});
+            });
 }
 
 }  // namespace tessera

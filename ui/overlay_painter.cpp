@@ -8,14 +8,6 @@ namespace tessera {
 
 namespace {
 
-// Two tones: the halo parts the line from a light ground, the core from a dark one.
-struct LineStyle {
-    QColor core;
-    QColor halo;
-    double corePx;
-    double haloPx;
-};
-
 // From afar, where lines are close together, they are thinner, so that the picture stays visible between
 // them.
 const LineStyle kFeatureNear{QColor(255, 214, 92), QColor(20, 14, 0, 190), 1.6, 4.0};
@@ -41,6 +33,21 @@ constexpr double kMaxSegments = 64;
 // Round caps close the notches between segments, but cost eight times as much as the lines themselves; where
 // there are many lines, they are short and nobody sees notches.
 constexpr size_t kMaxRoundCaps = 4000;
+
+// Softness of features, from crisp to soft.
+struct BlurClass {
+    float fromPx;
+    QColor colour;
+};
+const std::array kBlurClasses{BlurClass{0, QColor(255, 214, 92)}, BlurClass{.6F, QColor(255, 150, 110)},
+                              BlurClass{1.2F, QColor(230, 120, 220)}, BlurClass{2.4F, QColor(120, 170, 255)}};
+
+size_t blurClass(float blurPx) {
+    size_t found = 0;
+    for (size_t i = 1; i < kBlurClasses.size(); ++i)
+        if (blurPx >= kBlurClasses[i].fromPx) found = i;
+    return found;
+}
 
 QPointF toPoint(glm::dvec2 p) {
     return {p.x, p.y};
@@ -108,42 +115,61 @@ QRectF markAt(QPointF centre, double size) {
 
 }  // namespace
 
-OverlayPainter::OverlayPainter(const PatchMesh& mesh) {
-    mCurves.reserve(mesh.connectivity().edgeCount());
+OverlayPainter::Curve OverlayPainter::curveOf(const PatchMesh& mesh, EdgeId edge) {
+    const BezierCurve curve = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(edge)));
+    Curve shown;
+    double left = curve.p[0].x, right = left, top = curve.p[0].y, bottom = top;
+    for (size_t i = 0; i < 4; ++i) {
+        shown.p[i] = toPoint(curve.p[i]);
+        left = std::min(left, curve.p[i].x);
+        right = std::max(right, curve.p[i].x);
+        top = std::min(top, curve.p[i].y);
+        bottom = std::max(bottom, curve.p[i].y);
+    }
+    shown.box = QRectF(QPointF(left, top), QPointF(right, bottom));
+    shown.alive = true;
+    const EdgeCurve& known = mesh.curve(edge);
+    shown.feature = known.feature;
+    shown.blurPx = .5F * (known.blurSigma[0] + known.blurSigma[1]);
+    shown.straight = isStraight(shown.p);
+    return shown;
+}
+
+OverlayPainter::OverlayPainter(const PatchMesh& mesh) : mCurves(mesh.connectivity().edgeCapacity()) {
     mesh.forEachEdge([&](EdgeId e) {
-        const BezierCurve curve = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e)));
-        Curve shown;
-        double left = curve.p[0].x, right = left, top = curve.p[0].y, bottom = top;
-        for (size_t i = 0; i < 4; ++i) {
-            shown.p[i] = toPoint(curve.p[i]);
-            left = std::min(left, curve.p[i].x);
-            right = std::max(right, curve.p[i].x);
-            top = std::min(top, curve.p[i].y);
-            bottom = std::max(bottom, curve.p[i].y);
-        }
-        shown.box = QRectF(QPointF(left, top), QPointF(right, bottom));
-        shown.feature = mesh.curve(e).feature;
-        shown.straight = isStraight(shown.p);
-        mFeatureCount += shown.feature ? 1 : 0;
-        mCurves.push_back(shown);
+        mCurves[e.index] = curveOf(mesh, e);
+        mFeatureCount += mCurves[e.index].feature ? 1 : 0;
     });
+}
+
+void OverlayPainter::update(const PatchMesh& mesh, std::span<const EdgeId> edges) {
+    for (const EdgeId e : edges) {
+        Curve& curve = mCurves[e.index];
+        mFeatureCount -= curve.feature ? 1 : 0;
+        curve = curveOf(mesh, e);
+        mFeatureCount += curve.feature ? 1 : 0;
+    }
 }
 
 std::vector<OverlayPainter::Shown> OverlayPainter::shown(const ViewTransform& view,
                                                          const QRectF& visible) const {
-    const QRectF window(view.toImage(visible.topLeft()), view.toImage(visible.bottomRight()));
     std::vector<Shown> result;
-    for (const Curve& curve : mCurves) {
-        // Not QRectF::intersects: it takes a box without an area (a straight edge of the border) for empty.
-        if (curve.box.left() > window.right() || curve.box.right() < window.left() ||
-            curve.box.top() > window.bottom() || curve.box.bottom() < window.top())
-            continue;
-        Shown shown{.p = {}, .feature = curve.feature, .straight = curve.straight};
-        for (size_t i = 0; i < 4; ++i) shown.p[i] = view.toScreen(curve.p[i]);
-        shown.sizePx = length(shown.p[3] - shown.p[0]);
-        result.push_back(shown);
-    }
+    const QRectF window(view.toImage(visible.topLeft()), view.toImage(visible.bottomRight()));
+    for (const Curve& curve : mCurves)
+        if (curve.alive) appendShown(result, curve, view, window);
     return result;
+}
+
+void OverlayPainter::appendShown(std::vector<Shown>& result, const Curve& curve, const ViewTransform& view,
+                                 const QRectF& window) {
+    // Not QRectF::intersects: it takes a box without an area (a straight edge of the border) for empty.
+    if (curve.box.left() > window.right() || curve.box.right() < window.left() ||
+        curve.box.top() > window.bottom() || curve.box.bottom() < window.top())
+        return;
+    Shown shown{.p = {}, .feature = curve.feature, .straight = curve.straight, .blurPx = curve.blurPx};
+    for (size_t i = 0; i < 4; ++i) shown.p[i] = view.toScreen(curve.p[i]);
+    shown.sizePx = length(shown.p[3] - shown.p[0]);
+    result.push_back(shown);
 }
 
 void OverlayPainter::paint(QPainter& painter, const ViewTransform& view, const QRectF& visible,
@@ -160,14 +186,32 @@ void OverlayPainter::paint(QPainter& painter, const ViewTransform& view, const Q
     painter.restore();
 }
 
+void OverlayPainter::paintOutline(QPainter& painter, const ViewTransform& view, const QRectF& visible,
+                                  double pixelRatio, std::span<const EdgeId> edges,
+                                  const LineStyle& style) const {
+    const double margin = style.haloPx * pixelRatio;
+    const QRectF clip = visible.adjusted(-margin, -margin, margin, margin);
+    const QRectF window(view.toImage(clip.topLeft()), view.toImage(clip.bottomRight()));
+    std::vector<Shown> found;
+    for (const EdgeId e : edges) appendShown(found, mCurves[e.index], view, window);
+    std::vector<QLineF> lines;
+    for (const Shown& edge : found) appendCurve(lines, edge, clip, pixelRatio);
+    painter.save();
+    painter.setRenderHint(QPainter::Antialiasing);
+    drawTwoTone(painter, lines, style, pixelRatio, true);
+    painter.restore();
+}
+
 void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
                                  double pixelRatio, const OverlayOptions& options) {
-    std::vector<QLineF> plain, features;
+    std::vector<QLineF> plain;
+    std::array<std::vector<QLineF>, kBlurClasses.size()> features;
     std::vector<double> sizes;
     for (const Shown& edge : edges) {
         sizes.push_back(edge.sizePx / pixelRatio);
         if (edge.feature && options.features)
-            appendCurve(features, edge, clip, pixelRatio);
+            appendCurve(features[options.featuresByBlur ? blurClass(edge.blurPx) : 0], edge, clip,
+                        pixelRatio);
         else if (options.edges)
             appendCurve(plain, edge, clip, pixelRatio);
     }
@@ -175,7 +219,11 @@ void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& ed
     std::nth_element(sizes.begin(), median, sizes.end());
     const bool near = *median >= kNearFromPx;
     drawTwoTone(painter, plain, near ? kEdgeNear : kEdgeFar, pixelRatio, *median >= kHaloFromPx);
-    drawTwoTone(painter, features, near ? kFeatureNear : kFeatureFar, pixelRatio, true);
+    for (size_t i = 0; i < features.size(); ++i) {
+        LineStyle style = near ? kFeatureNear : kFeatureFar;
+        style.core = kBlurClasses[i].colour;
+        drawTwoTone(painter, features[i], style, pixelRatio, true);
+    }
 }
 
 void OverlayPainter::appendCurve(std::vector<QLineF>& lines, const Shown& edge, const QRectF& clip,

@@ -4,6 +4,7 @@
 
 #include <QPainter>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "core/mesh/patch_mesh.h"
@@ -13,11 +14,20 @@ namespace tessera {
 
 struct OverlayOptions {
     bool features = false;
+    bool featuresByBlur = false;  // in the colour of their softness
     bool edges = false;
     bool controlPoints = false;
 
     bool any() const { return features || edges || controlPoints; }
     bool operator==(const OverlayOptions&) const = default;
+};
+
+// Two tones: the halo parts the line from a light ground, the core from a dark one.
+struct LineStyle {
+    QColor core;
+    QColor halo;
+    double corePx;
+    double haloPx;
 };
 
 // The curves of one state of a mesh in flat arrays, made once, so that a frame costs a pass over the boxes
@@ -27,10 +37,17 @@ class OverlayPainter {
     OverlayPainter() = default;
     explicit OverlayPainter(const PatchMesh& mesh);
 
+    // Takes over these curves of a mesh of the same connectivity.
+    void update(const PatchMesh& mesh, std::span<const EdgeId> edges);
+
     // Paints in device pixels: the painter's transform takes them as they are. `pixelRatio` is how many of
     // them a line of "one pixel" is wide; `visible` is the part of the screen to paint.
     void paint(QPainter& painter, const ViewTransform& view, const QRectF& visible, double pixelRatio,
                const OverlayOptions& options) const;
+
+    // Paints these edges alone, as the outline of what is selected.
+    void paintOutline(QPainter& painter, const ViewTransform& view, const QRectF& visible, double pixelRatio,
+                      std::span<const EdgeId> edges, const LineStyle& style) const;
 
     size_t featureCount() const { return mFeatureCount; }
 
@@ -39,17 +56,23 @@ class OverlayPainter {
     struct Curve {
         std::array<QPointF, 4> p;
         QRectF box;
+        bool alive = false;
         bool feature = false;
         bool straight = false;
+        float blurPx = 0;  // mean of both ends
     };
     // An edge in view, on the screen.
     struct Shown {
         std::array<QPointF, 4> p;
         bool feature = false;
         bool straight = false;
+        float blurPx = 0;
         double sizePx = 0;
     };
 
+    static Curve curveOf(const PatchMesh& mesh, EdgeId edge);
+    static void appendShown(std::vector<Shown>& result, const Curve& curve, const ViewTransform& view,
+                            const QRectF& window);
     std::vector<Shown> shown(const ViewTransform& view, const QRectF& visible) const;
     static void paintCurves(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
                             double pixelRatio, const OverlayOptions& options);
@@ -59,7 +82,7 @@ class OverlayPainter {
     static void appendCurve(std::vector<QLineF>& lines, const Shown& edge, const QRectF& clip,
                             double pixelRatio);
 
-    std::vector<Curve> mCurves;
+    std::vector<Curve> mCurves;  // by edge id
     size_t mFeatureCount = 0;
 };
 

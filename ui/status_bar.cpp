@@ -64,6 +64,7 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     mJob->hide();
     connect(mCancel, &QPushButton::clicked, this, &StatusBar::cancelRequested);
 
+    mSelected = new QLabel;
     mCounts = new QLabel;
     mCursor = fixedLabel("00000, 00000", Qt::AlignRight);
     mSwatch = new QLabel;
@@ -98,6 +99,10 @@ void StatusBar::showJob(const Job* job) {
 
 QString StatusBar::jobText() const {
     return mJob->isHidden() ? QString() : mJobText->text();
+}
+
+void StatusBar::showSelection(size_t patches) {
+    mSelected->setText(patches == 0 ? QString() : tr("%1 selected  ·").arg(countText(patches)));
 }
 
 void StatusBar::showZoom(double scale) {

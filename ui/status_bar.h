@@ -28,6 +28,7 @@ class StatusBar : public QStatusBar {
     // Image pixels and the colour shown there; none outside the picture.
     void showCursor(std::optional<QPointF> image, QColor colour);
     void showCounts(const DocumentSession* session, size_t features);
+    void showSelection(size_t patches);
 
     QString jobText() const;
 
@@ -41,6 +42,7 @@ class StatusBar : public QStatusBar {
     QProgressBar* mProgress;
     QPushButton* mCancel;
     QLabel* mCounts;
+    QLabel* mSelected;
     QLabel* mCursor;
     QLabel* mSwatch;
     QLabel* mColour;

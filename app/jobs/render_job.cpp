@@ -11,7 +11,7 @@ Job* startRenderJob(QObject* owner, PatchMesh mesh, const View& view, int sample
     job->start<Frame>(
         [mesh = std::move(mesh), view, samples](Progress& progress) -> Result<Frame> {
             progress.beginStage("drawing", 1);
-            const Result<Image> image = rasterize(mesh, view, {.samples = samples}, &progress);
+            const Result<Image> image = rasterize(mesh, view, {.samples = samples, .showHidden = false}, &progress);
             if (!image) return tl::unexpected<Error>(image.error());
             return Frame{toQImage(*image), view, samples};
         },

@@ -18,6 +18,7 @@ struct Frame {
     int samples = 0;
 };
 
+// Without hidden patches.
 Job* startRenderJob(QObject* owner, PatchMesh mesh, const View& view, int samples,
                     std::function<void(Result<Frame>)> deliver);
 

@@ -1,0 +1,208 @@
+// The half of the canvas that listens: wheel, pointer and keys.
+#include <QContextMenuEvent>
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QNativeGestureEvent>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+
+#include "ui/canvas_widget.h"
+
+namespace tessera {
+
+namespace {
+
+// One notch of a wheel: 15 degrees, in eighths.
+constexpr double kNotch = 120;
+constexpr double kZoomPerNotch = 1.2;
+constexpr double kScrollPxPerNotch = 80;
+// How near the line of the split view takes hold of the pointer.
+constexpr double kSplitGripPx = 5;
+
+ToolModifiers modifiersOf(Qt::KeyboardModifiers modifiers) {
+    return {.shift = modifiers.testFlag(Qt::ShiftModifier),
+            .alt = modifiers.testFlag(Qt::AltModifier),
+            .control = modifiers.testFlag(Qt::ControlModifier)};
+}
+
+ToolKeyCode codeOf(int key) {
+    switch (key) {
+        case Qt::Key_Escape:
+            return ToolKeyCode::Escape;
+        case Qt::Key_Return:
+        case Qt::Key_Enter:
+            return ToolKeyCode::Enter;
+        case Qt::Key_Left:
+            return ToolKeyCode::Left;
+        case Qt::Key_Right:
+            return ToolKeyCode::Right;
+        case Qt::Key_Up:
+            return ToolKeyCode::Up;
+        case Qt::Key_Down:
+            return ToolKeyCode::Down;
+        default:
+            return ToolKeyCode::Other;
+    }
+}
+
+}  // namespace
+
+bool CanvasWidget::event(QEvent* event) {
+    if (event->type() != QEvent::NativeGesture) return QWidget::event(event);
+    const auto* gesture = static_cast<QNativeGestureEvent*>(event);
+    if (gesture->gestureType() != Qt::ZoomNativeGesture || !mSession) return QWidget::event(event);
+    ViewTransform view = mView;
+    view.zoomAt(gesture->position() * devicePixelRatioF(), 1 + gesture->value());
+    changeView(view);
+    return true;
+}
+
+void CanvasWidget::wheelEvent(QWheelEvent* event) {
+    event->accept();
+    if (!mSession) return;
+    ViewTransform view = mView;
+    const QPointF notches = QPointF(event->angleDelta()) / kNotch;
+    if (event->modifiers() & Qt::ControlModifier) {
+        view.zoomAt(event->position() * devicePixelRatioF(), std::pow(kZoomPerNotch, notches.y()));
+    } else {
+        // Touchpads say pixels, wheels say notches. Shift turns a wheel sideways.
+        QPointF step =
+            event->pixelDelta().isNull() ? notches * kScrollPxPerNotch : QPointF(event->pixelDelta());
+        if (event->modifiers() & Qt::ShiftModifier) step = {step.x() + step.y(), 0};
+        view.panBy(step * devicePixelRatioF());
+        view.keepInView(pictureSize(), deviceSize());
+    }
+    changeView(view);
+}
+
+ToolEvent CanvasWidget::toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const {
+    const QPointF image = toImage(position);
+    return {.point = {image.x(), image.y()},
+            .pxPerScreenPx = devicePixelRatioF() / mView.scale(),
+            .modifiers = modifiersOf(modifiers)};
+}
+
+ToolKey CanvasWidget::toolKey(const QKeyEvent& event) const {
+    return {.code = codeOf(event.key()),
+            .modifiers = modifiersOf(event.modifiers()),
+            .pxPerScreenPx = devicePixelRatioF() / mView.scale()};
+}
+
+bool CanvasWidget::overSplitLine(QPointF devicePosition) const {
+    return mSplit && hasOriginal() && mSession->hasMesh() &&
+           std::abs(devicePosition.x() - mSplitAt * deviceSize().width()) <
+               kSplitGripPx * devicePixelRatioF();
+}
+
+bool CanvasWidget::dragsView(const QMouseEvent& event) const {
+    return event.button() == Qt::MiddleButton || (event.button() == Qt::LeftButton && mSpace);
+}
+
+void CanvasWidget::mousePressEvent(QMouseEvent* event) {
+    if (!mSession || mPanning || mPressed) return;
+    mCursor = event->position() * devicePixelRatioF();
+    if (dragsView(*event)) {
+        mPanning = true;
+    } else if (event->button() != Qt::LeftButton) {
+        return;
+    } else if (overSplitLine(*mCursor)) {
+        mDraggingSplit = true;
+    } else if (mTools) {
+        mPressed = true;
+        mTools->press(toolEvent(event->position(), event->modifiers()));
+    }
+    updateCursor();
+}
+
+void CanvasWidget::mouseDoubleClickEvent(QMouseEvent* event) {
+    if (event->button() != Qt::LeftButton || mSpace || !mTools || !mSession) return mousePressEvent(event);
+    mPressed = true;
+    mTools->doubleClick(toolEvent(event->position(), event->modifiers()));
+}
+
+void CanvasWidget::dragView(QPointF position) {
+    ViewTransform view = mView;
+    view.panBy(position - *mCursor);
+    view.keepInView(pictureSize(), deviceSize());
+    mCursor = position;
+    changeView(view);
+}
+
+void CanvasWidget::mouseMoveEvent(QMouseEvent* event) {
+    const QPointF position = event->position() * devicePixelRatioF();
+    if (mPanning && mCursor) return dragView(position);
+    mCursor = position;
+    if (mDraggingSplit) {
+        mSplitAt = std::clamp(position.x() / deviceSize().width(), 0., 1.);
+        update();
+    } else if (mTools && mSession) {
+        mTools->move(toolEvent(event->position(), event->modifiers()));
+    }
+    if (mXRay) update();
+    updateCursor();
+    reportCursor();
+}
+
+void CanvasWidget::mouseReleaseEvent(QMouseEvent* event) {
+    if (event->button() != Qt::MiddleButton && event->button() != Qt::LeftButton) return;
+    mPanning = mDraggingSplit = false;
+    if (mPressed && event->button() == Qt::LeftButton) {
+        mPressed = false;
+        mTools->release(toolEvent(event->position(), event->modifiers()));
+    }
+    updateCursor();
+}
+
+void CanvasWidget::contextMenuEvent(QContextMenuEvent* event) {
+    if (mSession && mSession->hasMesh()) emit contextMenuWanted(event->globalPos());
+}
+
+void CanvasWidget::leaveEvent(QEvent*) {
+    mCursor.reset();
+    if (mTools) mTools->leave();
+    if (mXRay) update();
+    reportCursor();
+}
+
+void CanvasWidget::setPeeking(bool on) {
+    if (mPeeking == on) return;
+    mPeeking = on;
+    update();
+    reportCursor();
+}
+
+void CanvasWidget::setSpace(bool on) {
+    mSpace = on;
+    updateCursor();
+}
+
+void CanvasWidget::keyPressEvent(QKeyEvent* event) {
+    if (event->key() == Qt::Key_O && event->modifiers() == Qt::NoModifier)
+        setPeeking(true);
+    else if (event->key() == Qt::Key_Space)
+        setSpace(true);
+    else if (!mTools || !mSession || !mTools->keyPress(toolKey(*event)))
+        QWidget::keyPressEvent(event);
+}
+
+void CanvasWidget::keyReleaseEvent(QKeyEvent* event) {
+    // A held key repeats as pairs of press and release on X11.
+    if (event->isAutoRepeat()) return;
+    if (event->key() == Qt::Key_O)
+        setPeeking(false);
+    else if (event->key() == Qt::Key_Space)
+        setSpace(false);
+    else if (!mTools || !mSession || !mTools->keyRelease(toolKey(*event)))
+        QWidget::keyReleaseEvent(event);
+}
+
+void CanvasWidget::focusOutEvent(QFocusEvent*) {
+    // The releases will go elsewhere.
+    mPeeking = mSpace = mPanning = mPressed = mDraggingSplit = false;
+    if (mTools) mTools->cancel();
+    updateCursor();
+    update();
+}
+
+}  // namespace tessera

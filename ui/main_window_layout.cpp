@@ -1,0 +1,149 @@
+// The part of the main window that puts it together and remembers where things were.
+#include <QDockWidget>
+#include <QGridLayout>
+#include <QMenuBar>
+#include <QScreen>
+#include <QScrollArea>
+#include <QStackedLayout>
+#include <QTabBar>
+
+#include "ui/action_table.h"
+#include "ui/canvas_widget.h"
+#include "ui/main_window.h"
+#include "ui/message_bar.h"
+#include "ui/panels/history_panel.h"
+#include "ui/panels/navigator.h"
+#include "ui/panels/palette_panel.h"
+#include "ui/panels/recolour_panel.h"
+#include "ui/panels/selection_panel.h"
+#include "ui/ruler.h"
+#include "ui/start_page.h"
+#include "ui/status_bar.h"
+#include "ui/tool_bars.h"
+#include "ui/vectorize_panel.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr QSize kFirstSize(1440, 900);
+// Of what saveState() keeps: another number where docks have come or gone.
+constexpr int kStateVersion = 2;
+
+const std::array kRememberedToggles{ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints,
+                                    ActionId::ShowBlur, ActionId::Rulers};
+
+}  // namespace
+
+void MainWindow::buildLayout() {
+    setCentralWidget(makeCentre());
+    addToolBar(Qt::LeftToolBarArea, mToolBar = new ToolBar(*mActions, mTools));
+    addToolBar(Qt::TopToolBarArea, mToolOptions = new ToolOptionsBar(mTools));
+    setTabPosition(Qt::RightDockWidgetArea, QTabWidget::North);
+    makeDocks();
+    setStatusBar(mStatus = new StatusBar);
+    mRecent = new QMenu(tr("Open &Recent"), this);
+    mActions->fill(menuBar(), mRecent);
+}
+
+QWidget* MainWindow::makeCentre() {
+    auto* work = new QWidget;
+    auto* grid = new QGridLayout(work);
+    grid->setContentsMargins(0, 0, 0, 0);
+    grid->setSpacing(0);
+    grid->addWidget(mTabs = new QTabBar, 0, 0, 1, 2);
+    grid->addWidget(mMessages = new MessageBar, 1, 0, 1, 2);
+    grid->addWidget(mCorner = new QWidget, 2, 0);
+    grid->addWidget(mTopRuler = new Ruler(Qt::Horizontal), 2, 1);
+    grid->addWidget(mLeftRuler = new Ruler(Qt::Vertical), 3, 0);
+    grid->addWidget(mCanvas = new CanvasWidget, 3, 1);
+    grid->setRowStretch(3, 1);
+    grid->setColumnStretch(1, 1);
+    mTabs->setObjectName("documents");
+    mTabs->setTabsClosable(true);
+    mTabs->setMovable(true);
+    mTabs->setExpanding(false);
+    mTabs->setDocumentMode(true);
+    mTabs->setFocusPolicy(Qt::NoFocus);
+
+    auto* over = new QGridLayout(mCanvas);
+    over->setContentsMargins(0, 0, 0, 0);
+    over->addWidget(mStart = new StartPage);
+    return work;
+}
+
+void MainWindow::makeDocks() {
+    mPanel = new VectorizePanel(mSettings, *mActions);
+    QDockWidget* vectorize = addDock("vectorizeDock", tr("Vectorize"), mPanel, false);
+    QDockWidget* recolour = addDock("recolourDock", tr("Recolour"), mRecolour = new RecolourPanel, true);
+    QDockWidget* palette =
+        addDock("paletteDock", tr("Palette"), mPalette = new PalettePanel(mSwatches), true);
+    QDockWidget* selection =
+        addDock("selectionDock", tr("Selection"), mSelection = new SelectionPanel, true);
+    QDockWidget* history = addDock("historyDock", tr("History"), mHistory = new HistoryPanel, false);
+    QDockWidget* navigator = addDock("navigatorDock", tr("Navigator"), mNavigator = new Navigator, false);
+    tabifyDockWidget(vectorize, recolour);
+    tabifyDockWidget(recolour, palette);
+    tabifyDockWidget(selection, history);
+    tabifyDockWidget(history, navigator);
+    vectorize->raise();
+    navigator->raise();
+    resizeDocks({vectorize, navigator}, {3, 1}, Qt::Vertical);
+}
+
+QDockWidget* MainWindow::addDock(const QString& name, const QString& title, QWidget* content, bool scrolls) {
+    auto* dock = new QDockWidget(title);
+    dock->setObjectName(name);
+    dock->setAllowedAreas(Qt::LeftDockWidgetArea | Qt::RightDockWidgetArea);
+    dock->setFeatures(QDockWidget::DockWidgetMovable | QDockWidget::DockWidgetFloatable);
+    if (scrolls) {
+        auto* area = new QScrollArea;
+        area->setWidgetResizable(true);
+        area->setFrameShape(QFrame::NoFrame);
+        area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+        area->setWidget(content);
+        dock->setWidget(area);
+    } else {
+        dock->setWidget(content);
+    }
+    addDockWidget(Qt::RightDockWidgetArea, dock);
+    mDocks.append(dock);
+    return dock;
+}
+
+void MainWindow::setPanelsHidden(bool hidden) {
+    if (hidden) {
+        mHiddenDocks.clear();
+        for (QDockWidget* dock : mDocks)
+            if (!dock->isHidden()) mHiddenDocks.append(dock);
+    }
+    for (QDockWidget* dock : mHiddenDocks) dock->setVisible(!hidden);
+    mToolBar->setVisible(!hidden);
+    mToolOptions->setVisible(!hidden);
+}
+
+void MainWindow::restoreWindow() {
+    if (!restoreGeometry(mSettings.blob("geometry"))) resize(kFirstSize.boundedTo(screen()->availableSize()));
+    restoreState(mSettings.blob("state"), kStateVersion);
+    const QByteArrayList shown = mSettings.blob("toggles").split(' ');
+    for (const ActionId id : kRememberedToggles) {
+        QAction* action = (*mActions)[id];
+        action->setChecked(shown.contains(action->objectName().toUtf8()));
+    }
+    for (QDockWidget* dock : mDocks) dock->show();
+    mToolBar->show();
+    mToolOptions->show();
+    mTools.setOptions(mSettings.toolOptions());
+}
+
+void MainWindow::storeWindow() {
+    mSettings.setBlob("geometry", saveGeometry());
+    mSettings.setBlob("state", saveState(kStateVersion));
+    QByteArrayList shown;
+    for (const ActionId id : kRememberedToggles)
+        if ((*mActions)[id]->isChecked()) shown.append((*mActions)[id]->objectName().toUtf8());
+    mSettings.setBlob("toggles", shown.join(' '));
+    mSettings.setToolOptions(mTools.options());
+}
+
+}  // namespace tessera

@@ -1,0 +1,109 @@
+// See session_actions.h.
+#include "ui/session_actions.h"
+
+#include <array>
+
+#include "app/edit_actions.h"
+#include "app/message.h"
+#include "app/selection_actions.h"
+#include "ui/action_table.h"
+
+namespace tessera {
+
+namespace {
+
+enum Needs : unsigned {
+    kMesh = 0,
+    kPatches = 1,  // selected ones
+    kCurves = 2,   // selected ones
+    kPhoto = 4,
+};
+
+struct SessionAction {
+    ActionId id;
+    unsigned needs;
+    Result<void> (*run)(DocumentSession&, const ToolManager&);
+};
+
+template <void (*kRun)(DocumentSession&)>
+Result<void> always(DocumentSession& session, const ToolManager&) {
+    kRun(session);
+    return {};
+}
+
+template <Result<void> (*kRun)(DocumentSession&)>
+Result<void> perhaps(DocumentSession& session, const ToolManager&) {
+    return kRun(session);
+}
+
+template <PatchFlag kFlag, bool kOn>
+Result<void> flag(DocumentSession& session, const ToolManager&) {
+    return setFlag(session, kFlag, kOn);
+}
+
+template <PatchFlag kFlag>
+Result<void> clear(DocumentSession& session, const ToolManager&) {
+    return clearFlag(session, kFlag);
+}
+
+template <bool kOn>
+Result<void> feature(DocumentSession& session, const ToolManager&) {
+    return setFeature(session, kOn);
+}
+
+Result<void> similar(DocumentSession& session, const ToolManager& tools) {
+    selectSimilar(session, tools.options().wand);
+    return {};
+}
+
+const std::array kSessionActions{
+    SessionAction{ActionId::SelectAll, kMesh, always<selectAll>},
+    SessionAction{ActionId::SelectNone, kMesh, always<selectNone>},
+    SessionAction{ActionId::InvertSelection, kMesh, always<invertSelection>},
+    SessionAction{ActionId::GrowSelection, kPatches, always<growSelection>},
+    SessionAction{ActionId::ShrinkSelection, kPatches, always<shrinkSelection>},
+    SessionAction{ActionId::SelectSimilar, kPatches, similar},
+    SessionAction{ActionId::ResetColours, kPatches, perhaps<resetColours>},
+    SessionAction{ActionId::ResetShape, kPatches, perhaps<resetShape>},
+    SessionAction{ActionId::RefitColours, kPatches | kPhoto, perhaps<refitColours>},
+    SessionAction{ActionId::Hide, kPatches, flag<PatchFlag::Hidden, true>},
+    SessionAction{ActionId::ShowAll, kMesh, clear<PatchFlag::Hidden>},
+    SessionAction{ActionId::Lock, kPatches, flag<PatchFlag::Locked, true>},
+    SessionAction{ActionId::UnlockAll, kMesh, clear<PatchFlag::Locked>},
+    SessionAction{ActionId::CutOut, kPatches, flag<PatchFlag::CutOut, true>},
+    SessionAction{ActionId::FillIn, kPatches, flag<PatchFlag::CutOut, false>},
+    SessionAction{ActionId::SplitPatches, kPatches, perhaps<splitPatches>},
+    SessionAction{ActionId::SplitCurves, kCurves, perhaps<splitCurves>},
+    SessionAction{ActionId::MergeCurves, kCurves, perhaps<mergeCurves>},
+    SessionAction{ActionId::SnapToFeature, kCurves | kPhoto, perhaps<snapToFeature>},
+    SessionAction{ActionId::MarkFeature, kCurves, feature<true>},
+    SessionAction{ActionId::UnmarkFeature, kCurves, feature<false>},
+};
+
+bool holds(unsigned needs, const DocumentSession& session) {
+    const Selection& selection = session.selection();
+    return (!(needs & kPatches) || !selection.patches().empty()) &&
+           (!(needs & kCurves) || !selection.curves().empty()) && (!(needs & kPhoto) || session.photo().image);
+}
+
+}  // namespace
+
+void connectSessionActions(const ActionTable& actions, QObject* receiver,
+                           std::function<DocumentSession*()> session, const ToolManager& tools,
+                           std::function<void(const QString&)> say) {
+    for (const SessionAction& action : kSessionActions)
+        QObject::connect(actions[action.id], &QAction::triggered, receiver, [=, &tools] {
+            DocumentSession* current = session();
+            if (!current || !current->hasMesh()) return;
+            const Result<void> result = action.run(*current, tools);
+            if (!result) say(asSentence(result.error().message));
+        });
+}
+
+void enableSessionActions(const ActionTable& actions, const DocumentSession* session) {
+    const bool hasMesh = session && session->hasMesh();
+    for (const SessionAction& action : kSessionActions)
+        actions[action.id]->setEnabled(hasMesh && holds(action.needs, *session));
+}
+
+}  // namespace tessera
