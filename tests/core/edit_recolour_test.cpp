@@ -233,6 +233,28 @@ TEST(Recolour, GesturesGiveWhatSingleEditsGive) {
     }
 }
 
+TEST(Recolour, PreviewsAreNearlyTheSame) {
+    const PatchSet set = all(scene());
+    const Recolourer gesture(scene(), set);
+    PatchMesh quick = scene(), full = scene();
+    EXPECT_EQ(gesture.preview(quick, ColourShift{60, 1.1, 0}), gesture.apply(full, ColourShift{60, 1.1, 0}));
+    const auto one = rasterize(quick, wholePicture(quick, {1, 1})),
+               other = rasterize(full, wholePicture(full, {1, 1}));
+    double off = 0;
+    for (int y = 0; y < 150; ++y)
+        for (int x = 0; x < 200; ++x)
+            for (int c = 0; c < 3; ++c)
+                off += std::abs(std::clamp(double(one->at(x, y, c)), 0.0, 1.0) -
+                                std::clamp(double(other->at(x, y, c)), 0.0, 1.0));
+    EXPECT_LT(255 * off / (3 * 150 * 200), 4);
+    testing::expectValid(quick);
+    quick = scene();
+    full = scene();
+    gesture.preview(quick, Levels{.1, .2});
+    gesture.apply(full, Levels{.1, .2});
+    EXPECT_TRUE(testing::sameMesh(quick, full));
+}
+
 TEST(Recolour, AGradientGoesFromColourToColour) {
     PatchMesh mesh = scene();
     const PatchSet set = all(mesh);
