@@ -78,6 +78,10 @@ void measureRecolour(const PatchMesh& mesh) {
         });
         measure("recolour frame, hue" + of, 21, [&](int i) {
             work = mesh;
+            gesture.preview(work, ColourShift{8.0 * (i + 1), 1, 0});
+        });
+        measure("recolour, last frame, hue" + of, 3, [&](int i) {
+            work = mesh;
             gesture.apply(work, ColourShift{8.0 * (i + 1), 1, 0});
         });
         measure("recolour at once, hue" + of, 3, [&](int i) {
