@@ -55,6 +55,8 @@ class Tessellation : public testing::GlTest {
         glTransformFeedbackVaryings(program->name(), 3, outputs, GL_INTERLEAVED_ATTRIBS);
         glLinkProgram(program->name());
         glUseProgram(program->name());
+        const OffscreenTarget target(1, 1);  // nothing is drawn into it, but there has to be one
+        target.bind();
         constexpr size_t kMost = 1 << 20;
         Buffer feedback;
         feedback.reserve(kMost * sizeof(Corner));
@@ -118,12 +120,12 @@ class Tessellation : public testing::GlTest {
 
 TEST_F(Tessellation, EdgesHaveTheSamePointsFromBothSides) {
     const PatchMesh mesh = testing::curvedMesh(300, 220, 9, 7, 12);
-    for (const double zoom : {1.0, 3.7, 32.0}) {
-        const View view = testing::zoomedView(mesh, zoom, 400, 300);
+    for (const double zoom : {1.0, 3.7, 8.0}) {
+        const View view = wholePicture(mesh, {zoom, zoom});
         const auto points = pointsOnSides(mesh, tessellate(mesh, view));
         size_t compared = 0;
         EXPECT_EQ(unequalEdges(points, compared), 0U) << zoom;
-        EXPECT_GT(compared, zoom < 10 ? 100U : 2U);
+        EXPECT_GT(compared, 100U);
         for (const auto& [halfedge, here] : points)
             EXPECT_EQ(here.size(), (size_t{1} << mLevels[halfedge >> 1]) + 1) << zoom;
     }
@@ -171,7 +173,7 @@ TEST_F(Tessellation, PresplitPatchesMeetOthersWithoutGaps) {
             EXPECT_EQ(here, there) << e.index << " at x" << zoom;
             for (const auto& [t, at] : here) EXPECT_EQ(at.size(), 1U);
         });
-        EXPECT_EQ(deep > 0, zoom > 500);
+        EXPECT_GT(deep, 0U) << zoom;
     }
 }
 
