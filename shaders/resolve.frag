@@ -59,14 +59,14 @@ vec2 clampedToDomain(vec2 vw) {
     return b.yz / (b.x + b.y + b.z);
 }
 
-// Beyond this sum of second moments a spline is evaluated for each sample: the second order is not enough where
-// a pixel is a good part of a patch.
-const float kMostSpread = 0.003;
+// Where a mean may be off by more than this, or a pixel is a good part of a patch (in second moments), a spline
+// is evaluated for each sample.
+const float kMostUnsure = 0.004, kMostSpread = 0.02;
 
-vec4 splineAt(uint p, vec2 grid, vec2 vw, vec3 spread) {
+vec2 domainPointAt(uint p, vec2 grid, vec2 vw) {
     const PatchShape shape = loadShape(p);
     if ((shape.flags & kAffine) == 0u) vw = refinedParameters(shape, grid, vw);
-    return evaluateSpline(p, SplinePlace(domainPoint(clampedToDomain(vw)), spread));
+    return domainPoint(clampedToDomain(vw));
 }
 
 // The sum of the patch's own colours at the samples in `mask`.
@@ -86,10 +86,16 @@ vec4 sumOfSplines(uint p, vec2 grid[SAMPLES], uvec2 visible[SAMPLES], uint mask)
         spread += vec3(off * off, off.x * off.y);
     }
     spread /= count;
-    if (spread.x + spread.y <= kMostSpread) return count * splineAt(p, middle / count, vw, spread);
+    if (spread.x + spread.y < kMostSpread) {
+        float unsure;
+        const vec4 mean =
+            evaluateSpline(p, SplinePlace(domainPointAt(p, middle / count, vw), spread), unsure);
+        if (SAMPLES == 1 || unsure < kMostUnsure) return count * mean;
+    }
     vec4 sum = vec4(0.0);
     for (int k = 0; k < SAMPLES; ++k)
-        if ((mask >> k & 1u) != 0u) sum += splineAt(p, grid[k], unpackUnorm2x16(visible[k].y), vec3(0.0));
+        if ((mask >> k & 1u) != 0u)
+            sum += evaluateSpline(p, domainPointAt(p, grid[k], unpackUnorm2x16(visible[k].y)));
     return sum;
 }
 

@@ -10,12 +10,14 @@ struct SplinePlace {
 // All channels, in the mesh's colour basis: the mean over the points of `place`, to second order. The mean of
 // phi(|x|) = q log(q) / 2, q = |x|^2, over points with moments C is near phi at q + trace C, plus
 // x' C x / (q + trace C); on the centre itself that is exact where the points are equally far from it.
-vec4 evaluateSpline(uint p, SplinePlace place) {
+// `unsure` is about what the orders beyond may add, in channels 0 and 1.
+vec4 evaluateSpline(uint p, SplinePlace place, out float unsure) {
     countEvaluation();
     const SplineTerms terms = loadTerms(p);
     const vec2 at = place.at;
     const float trace = place.spread.x + place.spread.y;
     vec4 value = loadPolynomial(p, 0u) + at.x * loadPolynomial(p, 1u) + at.y * loadPolynomial(p, 2u);
+    float remainder = 0.0;
     for (uint i = 0u; i < terms.count; ++i) {
         const vec4 term = loadTerm(terms.first + i);
         const vec2 off = at - term.xy;
@@ -24,12 +26,22 @@ vec4 evaluateSpline(uint p, SplinePlace place) {
         float phi = q > 0.0 ? 0.34657359028 * q * log2(q) : 0.0;
 #if SAMPLES > 1
         const vec3 squares = vec3(off * off, 2.0 * off.x * off.y);
-        if (q > 0.0) phi += dot(place.spread, squares) / q;
+        if (q > 0.0) {
+            phi += dot(place.spread, squares) / q;
+            // phi_xxyy is 2 / q at most, the fourth order h^4 / 6 of that for samples at (+-h, +-h).
+            remainder += max(abs(term.z), abs(term.w)) / q;
+        }
 #endif
         value.xy += phi * term.zw;
         if (i < terms.others) value.zw += phi * loadTermRest(terms.first + i);
     }
+    unsure = remainder * trace * trace / 12.0;
     return value;
+}
+
+vec4 evaluateSpline(uint p, vec2 at) {
+    float unsure;
+    return evaluateSpline(p, SplinePlace(at, vec3(0.0)), unsure);
 }
 
 const float kDomainHeight = 0.86602540378;
