@@ -10,7 +10,7 @@ struct SplinePlace {
 // All channels, in the mesh's colour basis: the mean over the points of `place`, to second order. The mean of
 // phi(|x|) = q log(q) / 2, q = |x|^2, over points with moments C is near phi at q + trace C, plus
 // x' C x / (q + trace C); on the centre itself that is exact where the points are equally far from it.
-// `unsure` is about what the orders beyond may add, in channels 0 and 1.
+// `unsure` is about what the orders beyond may add.
 vec4 evaluateSpline(uint p, SplinePlace place, out float unsure) {
     countEvaluation();
     const SplineTerms terms = loadTerms(p);
@@ -22,20 +22,21 @@ vec4 evaluateSpline(uint p, SplinePlace place, out float unsure) {
         const vec4 term = loadTerm(terms.first + i);
         const vec2 off = at - term.xy;
         const float q = dot(off, off) + trace;
+        const vec2 rest = i < terms.others ? loadTermRest(terms.first + i) : vec2(0.0);
         // 0 at 0, where log2 is not finite.
         float phi = q > 0.0 ? 0.34657359028 * q * log2(q) : 0.0;
 #if SAMPLES > 1
-        const vec3 squares = vec3(off * off, 2.0 * off.x * off.y);
         if (q > 0.0) {
-            phi += dot(place.spread, squares) / q;
-            // phi_xxyy is 2 / q at most, the fourth order h^4 / 6 of that for samples at (+-h, +-h).
-            remainder += max(abs(term.z), abs(term.w)) / q;
+            phi += dot(place.spread, vec3(off * off, 2.0 * off.x * off.y)) / q;
+            // The fourth order is phi_xxyy h^4 / 6 for samples at (+-h, +-h), and phi_xxyy 2 / q at most; near the
+            // centre the orders do not fall off.
+            const vec2 most = max(abs(term.zw), abs(rest));
+            remainder += max(most.x, most.y) * (0.0625 + 0.25 * trace / q) / q;
         }
 #endif
-        value.xy += phi * term.zw;
-        if (i < terms.others) value.zw += phi * loadTermRest(terms.first + i);
+        value += phi * vec4(term.zw, rest);
     }
-    unsure = remainder * trace * trace / 12.0;
+    unsure = remainder * trace * trace;
     return value;
 }
 
@@ -48,6 +49,11 @@ const float kDomainHeight = 0.86602540378;
 
 vec2 domainPoint(vec2 vw) {
     return vec2(vw.x + 0.5 * vw.y, kDomainHeight * vw.y);
+}
+
+// Second moments (vv, ww, vw) of parameters as those of points of the domain (xx, yy, xy).
+vec3 domainSpread(vec3 m) {
+    return vec3(m.x + m.z + 0.25 * m.y, kDomainHeight * kDomainHeight * m.y, kDomainHeight * (m.z + 0.5 * m.y));
 }
 
 vec4 toWorking(vec4 c) {
