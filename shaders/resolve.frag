@@ -73,7 +73,7 @@ vec2 clampedToDomain(vec2 vw) {
 
 // Where a mean may be off by more than this, or a pixel is a good part of a patch (in second moments), a spline
 // is evaluated for each sample.
-const float kMostUnsure = 0.004, kMostSpread = 0.02;
+const float kMostUnsure = 0.0025, kMostSpread = 0.02;
 
 vec2 domainPointAt(uint p, vec2 grid, vec2 vw, vec3 spread) {
     const PatchShape shape = loadShape(p);

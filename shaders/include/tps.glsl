@@ -1,5 +1,12 @@
 // The colour function of a patch (core/mesh/COLOUR.md).
 
+// The most that a channel of the working space can differ where those of the basis differ so.
+float largestInWorking(vec4 c) {
+    const float opponent =
+        0.57735026919 * c.x + max(0.70710678119 * c.y + 0.40824829046 * c.z, 0.81649658093 * c.z);
+    return max(view.opponent != 0u ? opponent : max(c.x, max(c.y, c.z)), c.w);
+}
+
 // Where a spline is evaluated: the mean of some points of the domain, and their second moments about it (xx, yy,
 // xy), which are 0 for a single point.
 struct SplinePlace {
@@ -30,8 +37,7 @@ vec4 evaluateSpline(uint p, SplinePlace place, out float unsure) {
             phi += dot(place.spread, vec3(off * off, 2.0 * off.x * off.y)) / q;
             // The fourth order is phi_xxyy h^4 / 6 for samples at (+-h, +-h), and phi_xxyy 2 / q at most; near the
             // centre the orders do not fall off.
-            const vec2 most = max(abs(term.zw), abs(rest));
-            remainder += max(most.x, most.y) * (0.0625 + 0.25 * trace / q) / q;
+            remainder += largestInWorking(abs(vec4(term.zw, rest))) * (0.0625 + 0.25 * trace / q) / q;
         }
 #endif
         value += phi * vec4(term.zw, rest);
