@@ -37,7 +37,7 @@ vec4 evaluateSpline(uint p, SplinePlace place, out float unsure) {
             phi += dot(place.spread, vec3(off * off, 2.0 * off.x * off.y)) / q;
             // The fourth order is phi_xxyy h^4 / 6 for samples at (+-h, +-h), and phi_xxyy 2 / q at most; near the
             // centre the orders do not fall off.
-            remainder += largestInWorking(abs(vec4(term.zw, rest))) * (0.0625 + 0.25 * trace / q) / q;
+            remainder += largestInWorking(abs(vec4(term.zw, rest))) * (0.0625 + 1.0 * trace / q) / q;
         }
 #endif
         value += phi * vec4(term.zw, rest);
