@@ -2,6 +2,7 @@
 #include "app/cli_render.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -9,6 +10,9 @@
 #include "core/document/codec.h"
 #include "core/export/rasterize.h"
 #include "core/image/image_io.h"
+#include "render/gl_objects.h"
+#include "render/offscreen_gl.h"
+#include "render/renderer.h"
 
 namespace tessera::cli {
 
@@ -27,6 +31,7 @@ struct Arguments {
     int samples = 4;
     double sharpen = 1;
     bool reference = false;
+    std::string backend = "cpu";
     bool quiet = false;
 };
 
@@ -40,7 +45,46 @@ Result<View> viewFor(const Arguments& arguments, const PatchMesh& mesh) {
     return wholePicture(mesh, {scale, scale});
 }
 
+// With OpenGL, tile by tile, since a driver limits the size of a framebuffer.
+Result<Image> drawWithGl(const PatchMesh& mesh, const View& view, const Arguments& arguments,
+                         Progress& progress) {
+    constexpr int kTile = 1024;
+    const auto context = render::OffscreenGl::create();
+    if (!context) return tl::unexpected(context.error());
+    auto renderer = render::Renderer::create();
+    if (!renderer) return tl::unexpected(renderer.error());
+    renderer->setMesh(mesh);
+    Image image(view.width, view.height, mesh.channels());
+    for (int y0 = 0; y0 < view.height; y0 += kTile)
+        for (int x0 = 0; x0 < view.width; x0 += kTile) {
+            View tile = view;
+            tile.origin += glm::dvec2(x0, y0) / view.scale;
+            tile.width = std::min(kTile, view.width - x0);
+            tile.height = std::min(kTile, view.height - y0);
+            const render::OffscreenTarget target(tile.width, tile.height);
+            target.bind();
+            const auto drawn =
+                renderer->draw(tile, {.samples = arguments.samples, .sharpen = arguments.sharpen});
+            if (!drawn) return tl::unexpected(drawn.error());
+            const Image part = target.read(mesh.channels());
+            for (int c = 0; c < mesh.channels(); ++c)
+                for (int y = 0; y < tile.height; ++y)
+                    for (int x = 0; x < tile.width; ++x) image.at(x0 + x, y0 + y, c) = part.at(x, y, c);
+            if (!progress.step(double(y0) / view.height)) return stopped();
+        }
+    return image;
+}
+
+Result<Image> draw(const PatchMesh& mesh, const View& view, const Arguments& arguments, Progress& progress) {
+    if (arguments.reference) return rasterizeReference(mesh, view, arguments.sharpen);
+    if (arguments.backend == "gl") return drawWithGl(mesh, view, arguments, progress);
+    return rasterize(mesh, view, {arguments.samples, arguments.sharpen}, &progress);
+}
+
 int run(const Arguments& arguments) {
+    if (arguments.backend == "gl" && arguments.samples > 4)
+        return report(
+            {ErrorCode::Usage, "--backend gl draws 1 or 4 samples a pixel; take --backend cpu for 16"});
     if (const auto format = pictureFormatFor(arguments.output); !format) return report(format.error());
     if (!(arguments.scale >= kMinScale && arguments.scale <= kMaxScale))  // CLI11's range lets NaN through
         return report({ErrorCode::Usage, "--scale is a number from 1e-6 to 1e6"});
@@ -59,9 +103,7 @@ int run(const Arguments& arguments) {
                       [&](std::string_view stage, double, double total) { display.show(stage, total); });
     progress.beginStage("render", 1);
     const PatchMesh& mesh = document->mesh;
-    const Result<Image> image =
-        arguments.reference ? Result<Image>(rasterizeReference(mesh, *view, arguments.sharpen))
-                            : rasterize(mesh, *view, {arguments.samples, arguments.sharpen}, &progress);
+    const Result<Image> image = draw(mesh, *view, arguments, progress);
     display.clear();
     if (!image) return report(image.error());
     const auto written = stop.whileWriting([&] { return writeImage(*image, arguments.output); });
@@ -95,10 +137,16 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
                      "Factor on the blur of soft edges: 0 draws them hard, 1 as they are, more softer")
         ->check(CLI::Range(0.0, kMaxSharpen))
         ->capture_default_str();
+    auto* backend = command
+                        ->add_option("--backend", arguments->backend,
+                                     "What draws: the processor, or OpenGL 4.5 (no window is needed)")
+                        ->check(CLI::IsMember({"cpu", "gl"}))
+                        ->capture_default_str();
     command
         ->add_flag("--reference", arguments->reference,
                    "Use the slow renderer that the fast one is tested against: one sample a pixel")
-        ->excludes(samples);
+        ->excludes(samples)
+        ->excludes(backend);
     command->add_flag("--quiet", arguments->quiet, "Show no progress");
     command->callback([arguments, &exitCode] { exitCode = run(*arguments); });
 }

@@ -102,17 +102,19 @@ void OffscreenTarget::bind() const {
     glViewport(0, 0, mTexture.width(), mTexture.height());
 }
 
-std::vector<float> OffscreenTarget::read() const {
+Image OffscreenTarget::read(int channels) const {
     constexpr size_t kChannels = 4;
-    const size_t stride = size_t(mTexture.width()) * kChannels, rows = size_t(mTexture.height());
-    std::vector<float> pixels(stride * rows);
+    const int width = mTexture.width(), height = mTexture.height();
+    std::vector<float> pixels(size_t(width) * size_t(height) * kChannels);
     glGetTextureImage(mTexture.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(pixels.size() * sizeof(float)),
                       pixels.data());
-    for (size_t row = 0; row < rows / 2; ++row)
-        std::swap_ranges(pixels.begin() + ptrdiff_t(row * stride),
-                         pixels.begin() + ptrdiff_t((row + 1) * stride),
-                         pixels.begin() + ptrdiff_t((rows - 1 - row) * stride));
-    return pixels;
+    Image image(width, height, channels);
+    for (int c = 0; c < channels; ++c)
+        for (int y = 0; y < height; ++y) {
+            const float* from = &pixels[size_t(height - 1 - y) * size_t(width) * kChannels + size_t(c)];
+            for (int x = 0; x < width; ++x) image.at(x, y, c) = from[size_t(x) * kChannels];
+        }
+    return image;
 }
 
 StateScope::StateScope()

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/image/image.h"
 #include "render/gl.h"
 #include "render/gpu_layout.h"
 
@@ -93,15 +94,15 @@ class Texture {
     int mWidth = 0, mHeight = 0;
 };
 
-// A picture to draw into where there is no window: RGBA, 32 bit floats, read back in rows from the top.
+// A picture to draw into where there is no window: RGBA, 32 bit floats.
 class OffscreenTarget {
   public:
     OffscreenTarget(int width, int height);
 
     // Makes it the framebuffer that is drawn to, with a viewport that fills it.
     void bind() const;
-    // Four floats a pixel.
-    std::vector<float> read() const;
+    // The first `channels` of the four, rows from the top.
+    Image read(int channels) const;
 
   private:
     Texture mTexture{GL_RGBA32F};

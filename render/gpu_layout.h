@@ -47,7 +47,7 @@ static_assert(sizeof(GpuPatch) == 5 * 16);
 struct GpuTerm {
     glm::vec2 centre;
     std::array<float, 4> alpha;
-    std::array<float, 2> padding{};
+    std::array<float, 2> padding;
 };
 static_assert(sizeof(GpuTerm) == 2 * 16);
 
@@ -75,7 +75,7 @@ struct GpuFeature {
     std::array<glm::vec2, 2> endTangents;
     uint32_t chain;
     uint32_t flags;
-    uint32_t padding = 0;
+    uint32_t padding;
     std::array<float, kGpuFeatureSegments + 1> arc;
     std::array<glm::vec2, kGpuFeatureSegments> chords;
 };

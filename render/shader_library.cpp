@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <set>
 #include <utility>
 
 namespace tessera::render {
@@ -21,47 +22,49 @@ GLenum stageOf(std::string_view name) {
 }
 
 Result<void> append(const std::map<std::string_view, std::string_view>& shaders, std::string_view name,
-                    std::span<const std::string> defines, ShaderText& result) {
+                    std::span<const std::string> defines, std::set<std::string_view>& included,
+                    ShaderText& result) {
     const auto found = shaders.find(name);
     if (found == shaders.end())
         return failure(ErrorCode::Internal, "the program has no shader '" + std::string(name) + "'");
-    const size_t file = result.files.size();
-    result.files.emplace_back(name);
-    const auto mark = [&](int line) {
-        result.text += "#line " + std::to_string(line) + " " + std::to_string(file) + "\n";
-    };
-    if (file > 0) mark(1);
+    included.insert(found->first);
     std::string_view rest = found->second;
     for (int line = 1; !rest.empty(); ++line) {
         const size_t end = std::min(rest.find('\n'), rest.size());
         const std::string_view text = rest.substr(0, end);
         rest.remove_prefix(std::min(end + 1, rest.size()));
+        const auto add = [&](std::string_view added) {
+            result.text.append(added).append("\n");
+            result.origins.push_back({std::string(name), line});
+        };
         if (text.starts_with(kInclude)) {
             const std::string_view target =
                 text.substr(kInclude.size(), text.find('"', kInclude.size()) - kInclude.size());
-            if (std::find(result.files.begin(), result.files.end(), target) == result.files.end())
-                if (auto included = append(shaders, target, {}, result); !included) return included;
-            mark(line + 1);
+            if (included.contains(target)) continue;
+            if (auto done = append(shaders, target, {}, included, result); !done) return done;
             continue;
         }
-        result.text.append(text).append("\n");
-        if (line > 1 || defines.empty()) continue;
-        for (const std::string& define : defines) result.text += define + "\n";
-        mark(2);
+        add(text);
+        if (line == 1)
+            for (const std::string& define : defines) add(define);
     }
     return {};
 }
 
-// The driver's first line, its "FILE:LINE" or "FILE(LINE)" in front read as a name.
-std::string readable(std::string_view log, const std::vector<std::string>& files) {
-    std::string_view line = log.substr(0, log.find('\n'));
-    size_t file = 0;
-    const char* const end = line.data() + line.size();
-    const auto [after, error] = std::from_chars(line.data(), end, file);
-    if (error != std::errc() || file >= files.size() || after == end || (*after != ':' && *after != '('))
-        return std::string(line);
-    line.remove_prefix(size_t(after - line.data()) + 1);
-    return files[file] + ":" + std::string(line);
+// The driver's first line with the place that it begins with, "0:LINE(COLUMN): " or "0(LINE) : ", as file and
+// line. (Drivers differ in what they make of #line.)
+std::string readable(std::string_view log, const ShaderText& source) {
+    const std::string_view text = log.substr(0, log.find('\n'));
+    const size_t separator = text.find_first_of(":(");
+    if (separator == std::string_view::npos) return std::string(text);
+    size_t line = 0;
+    const char* const end = text.data() + text.size();
+    const auto [after, error] = std::from_chars(text.data() + separator + 1, end, line);
+    if (error != std::errc() || line == 0 || line > source.origins.size()) return std::string(text);
+    const ShaderText::Origin& origin = source.origins[line - 1];
+    const size_t message = text.find(": ", size_t(after - text.data()));
+    return origin.file + ":" + std::to_string(origin.line) +
+           std::string(message == std::string_view::npos ? "" : text.substr(message));
 }
 
 Result<Shader> compile(const ShaderText& source, std::string_view name) {
@@ -76,7 +79,7 @@ Result<Shader> compile(const ShaderText& source, std::string_view name) {
     std::string log(size_t(std::max(length, 1)), '\0');
     glGetShaderInfoLog(shader.name(), length, nullptr, log.data());
     return failure(ErrorCode::Internal,
-                   "the driver refuses shader " + std::string(name) + ": " + readable(log, source.files));
+                   "the driver refuses shader " + std::string(name) + ": " + readable(log, source));
 }
 
 }  // namespace
@@ -84,7 +87,9 @@ Result<Shader> compile(const ShaderText& source, std::string_view name) {
 Result<ShaderText> assembleShader(const std::map<std::string_view, std::string_view>& shaders,
                                   std::string_view name, std::span<const std::string> defines) {
     ShaderText result;
-    if (auto done = append(shaders, name, defines, result); !done) return tl::unexpected(done.error());
+    std::set<std::string_view> included;
+    if (auto done = append(shaders, name, defines, included, result); !done)
+        return tl::unexpected(done.error());
     return result;
 }
 

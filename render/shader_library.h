@@ -16,11 +16,15 @@ namespace tessera::render {
 const std::map<std::string_view, std::string_view>& embeddedShaders();
 
 // The text of a shader with `#include "include/NAME.glsl"` replaced by the file, each file once, and
-// `defines` (whole lines, such as "#define SAMPLES 4") after the first line. #line directives number the
-// files as in `files`. Internal where a file is missing.
+// `defines` (whole lines, such as "#define SAMPLES 4") after the first line. Internal where a file is
+// missing.
 struct ShaderText {
+    struct Origin {
+        std::string file;
+        int line = 0;
+    };
     std::string text;
-    std::vector<std::string> files;
+    std::vector<Origin> origins;  // by line of the text
 };
 Result<ShaderText> assembleShader(const std::map<std::string_view, std::string_view>& shaders,
                                   std::string_view name, std::span<const std::string> defines = {});

@@ -32,8 +32,9 @@ vec2 imagePoint(vec2 grid) {
 const int kRefinements = 3;
 const float kRefined = 0.01;  // samples
 
-// The parameters of the shape's point at `grid`, from ones nearby.
-vec2 refinedParameters(PatchShape shape, vec2 grid, vec2 vw) {
+// The mean parameters of points of the shape whose mean is `grid`, from ones nearby; `spread` are the second moments
+// (vv, ww, vw) of their parameters.
+vec2 refinedParameters(PatchShape shape, vec2 grid, vec2 vw, vec3 spread) {
     ivec2 lattice[10];
     loadControlPoints(shape, lattice);
     vec2 b[10];
@@ -49,7 +50,18 @@ vec2 refinedParameters(PatchShape shape, vec2 grid, vec2 vw) {
         const float area = dv.x * dw.y - dv.y * dw.x;
         if (area == 0.0) break;
         vw += vec2(off.x * dw.y - off.y * dw.x, dv.x * off.y - dv.y * off.x) / area;
-        if (dot(off, off) < kRefined) break;
+        if (dot(off, off) >= kRefined) continue;
+#if SAMPLES > 1
+        // The map's second derivatives move the mean.
+        const vec2 a = u * b[0] + v * b[1] + w * b[8], ab = u * b[1] + v * b[2] + w * b[9],
+                   ac = u * b[8] + v * b[9] + w * b[7];
+        const vec2 dvv = a - 2.0 * ab + u * b[2] + v * b[3] + w * b[4],
+                   dww = a - 2.0 * ac + u * b[7] + v * b[5] + w * b[6],
+                   dvw = a - ab - ac + u * b[9] + v * b[4] + w * b[5];
+        const vec2 moved = 3.0 * (spread.x * dvv + spread.y * dww + 2.0 * spread.z * dvw);
+        vw -= vec2(moved.x * dw.y - moved.y * dw.x, dv.x * moved.y - dv.y * moved.x) / area;
+#endif
+        break;
     }
     return vw;
 }
@@ -59,14 +71,14 @@ vec2 clampedToDomain(vec2 vw) {
     return b.yz / (b.x + b.y + b.z);
 }
 
-// Beyond this sum of second moments a spline is evaluated for each sample: the second order is not enough where
-// a pixel is a good part of a patch.
-const float kMostSpread = 0.003;
+// Where a mean may be off by more than this, or a pixel is a good part of a patch (in second moments), a spline
+// is evaluated for each sample.
+const float kMostUnsure = 0.0025, kMostSpread = 0.02;
 
-vec4 splineAt(uint p, vec2 grid, vec2 vw, vec3 spread) {
+vec2 domainPointAt(uint p, vec2 grid, vec2 vw, vec3 spread) {
     const PatchShape shape = loadShape(p);
-    if ((shape.flags & kAffine) == 0u) vw = refinedParameters(shape, grid, vw);
-    return evaluateSpline(p, SplinePlace(domainPoint(clampedToDomain(vw)), spread));
+    if ((shape.flags & kAffine) == 0u) vw = refinedParameters(shape, grid, vw, spread);
+    return domainPoint(clampedToDomain(vw));
 }
 
 // The sum of the patch's own colours at the samples in `mask`.
@@ -82,14 +94,20 @@ vec4 sumOfSplines(uint p, vec2 grid[SAMPLES], uvec2 visible[SAMPLES], uint mask)
     vec3 spread = vec3(0.0);
     for (int k = 0; k < SAMPLES; ++k) {
         if ((mask >> k & 1u) == 0u) continue;
-        const vec2 off = domainPoint(unpackUnorm2x16(visible[k].y) - vw);
+        const vec2 off = unpackUnorm2x16(visible[k].y) - vw;
         spread += vec3(off * off, off.x * off.y);
     }
     spread /= count;
-    if (spread.x + spread.y <= kMostSpread) return count * splineAt(p, middle / count, vw, spread);
+    if (spread.x + spread.y < kMostSpread) {
+        const vec2 at = domainPointAt(p, middle / count, vw, spread);
+        float unsure;
+        const vec4 mean = evaluateSpline(p, SplinePlace(at, domainSpread(spread)), unsure);
+        if (SAMPLES == 1 || unsure < kMostUnsure) return count * mean;
+    }
     vec4 sum = vec4(0.0);
     for (int k = 0; k < SAMPLES; ++k)
-        if ((mask >> k & 1u) != 0u) sum += splineAt(p, grid[k], unpackUnorm2x16(visible[k].y), vec3(0.0));
+        if ((mask >> k & 1u) != 0u)
+            sum += evaluateSpline(p, domainPointAt(p, grid[k], unpackUnorm2x16(visible[k].y), vec3(0.0)));
     return sum;
 }
 

@@ -8,6 +8,7 @@ const float kEvenSpan = 0.3;
 const int kNewtonSteps = 5;
 const float kNewtonEnough = 1e-4;
 const int kMaxBlurTerms = 4;
+const float kSameFoot = 0.05;  // feet that are this near in t may share a place
 
 float fade3(float from, float to, float x) {
     const float t = clamp((x - from) / (to - from), 0.0, 1.0);
@@ -154,6 +155,7 @@ struct BlurTerm {
     float weight;
     uint reach;  // as in `reaches`
     Foot foot;
+    bool mixed;  // the samples are nearest to several features: one place does not stand for all
 };
 
 // How far beyond the reach of its chain a feature is from a point, in squares: below 0 wherever it may matter.
@@ -188,25 +190,22 @@ BlurTerm chainTerm(uint end, vec2 samples[SAMPLES], uint mask, vec2 middle, floa
             if (findFoot(f, c, bounds, (flags & kEven) != 0u, samples[s] - from, feet[s])) nearest[s] = reach;
         }
     }
-    BlurTerm term = BlurTerm(0.0, kNoPatch, feet[0]);
-    float heaviest = 0.0;
+    BlurTerm term = BlurTerm(0.0, kNoPatch, feet[0], false);
+    float heaviest = 0.0, moment = 0.0;
     for (int s = 0; s < SAMPLES; ++s) {
         if (nearest[s] == kNoPatch) continue;
         const float weight = blurWeight(nearest[s] & kReachFeature, feet[s]);
+        if (weight <= 0.0) continue;
+        term.mixed = term.mixed || (term.weight > 0.0 && (nearest[s] != term.reach || abs(feet[s].t - term.foot.t) > kSameFoot));
         term.weight += weight;
+        moment += weight * feet[s].t;
         if (weight <= heaviest) continue;
         heaviest = weight;
         term.reach = nearest[s];
         term.foot = feet[s];
     }
-    // The mean of the feet where they are on one curve.
-    float t = 0.0, sum = 0.0;
-    for (int s = 0; s < SAMPLES; ++s) {
-        if (nearest[s] == kNoPatch || nearest[s] != term.reach) continue;
-        t += feet[s].t;
-        sum += 1.0;
-    }
-    if (sum > 0.0) term.foot.t = t / sum;
+    // Where the jump is linear along the curve, its weighted sum is that of one place.
+    if (term.weight > 0.0 && !term.mixed) term.foot.t = moment / term.weight;
     return term;
 }
 
@@ -215,25 +214,19 @@ vec4 jumpOf(BlurTerm term, uint p) {
     const uvec2 beside = loadFeaturePatches(f);
     const int own = sideOf(f, term.reach, p, beside, term.foot);
     const vec2 beyond = featureDomainPoint(f, 1 - own, term.foot.t), here = featureDomainPoint(f, own, term.foot.t);
-    return evaluateSpline(beside[1 - own], SplinePlace(beyond, vec3(0.0))) -
-           evaluateSpline(beside[own], SplinePlace(here, vec3(0.0)));
+    return evaluateSpline(beside[1 - own], beyond) -
+           evaluateSpline(beside[own], here);
 }
 
-// The sum over the samples in `mask` of what blurred features add to the colour of patch p; samples in image
-// pixels from the view's corner, none farther than `slack` from `middle`.
-vec4 blurOf(uint p, vec2 samples[SAMPLES], uint mask, vec2 middle, float slack) {
-    const uvec2 list = loadReachList(p);
-    const uint end = list.x + list.y;
-    uint first = list.x;
-    for (; first < end; ++first) {
-        const uint f = loadReach(first) & kReachFeature;
-        if (excessOf(loadFeatureEnds(f), loadFeatureBounds(f), slack, middle) < 0.0) break;
-    }
-    // The features of a chain that lie before are out of reach.
+// The sum over the samples in `mask` of what the reaches [first, end) add to the colour of patch p, or `mixed`.
+vec4 blurOfGroup(uint p, uint first, uint end, vec2 samples[SAMPLES], uint mask, vec2 middle, float slack,
+                 out bool mixed) {
     BlurTerm terms[kMaxBlurTerms];
     int count = 0;
+    mixed = false;
     for (uint i = first; i < end;) {
         const BlurTerm term = chainTerm(end, samples, mask, middle, slack, i);
+        mixed = mixed || term.mixed;
         if (term.weight <= 0.0) continue;
         int slot = count;
         if (count == kMaxBlurTerms) {
@@ -247,6 +240,32 @@ vec4 blurOf(uint p, vec2 samples[SAMPLES], uint mask, vec2 middle, float slack) 
         terms[slot] = term;
     }
     vec4 sum = vec4(0.0);
+    if (mixed) return sum;
     for (int k = 0; k < count; ++k) sum += terms[k].weight * jumpOf(terms[k], p);
+    return sum;
+}
+
+// The sum over the samples in `mask` of what blurred features add to the colour of patch p; samples in image
+// pixels from the view's corner, none farther than `slack` from `middle`.
+vec4 blurOf(uint p, vec2 samples[SAMPLES], uint mask, vec2 middle, float slack) {
+    const uvec2 list = loadReachList(p);
+    const uint end = list.x + list.y;
+    uint first = list.x;
+    for (; first < end; ++first) {
+        const uint f = loadReach(first) & kReachFeature;
+        if (excessOf(loadFeatureEnds(f), loadFeatureBounds(f), slack, middle) < 0.0) break;
+    }
+    // The features of a chain that lie before are out of reach. All samples together, or one by one.
+    vec4 sum = vec4(0.0);
+    uint left = first < end ? mask : 0u, group = mask;
+    while (left != 0u) {
+        bool mixed;
+        const vec4 part = blurOfGroup(p, first, end, samples, group, middle, slack, mixed);
+        if (!mixed) {
+            sum += part;
+            left &= ~group;
+        }
+        group = left & -left;
+    }
     return sum;
 }

@@ -158,6 +158,9 @@ TEST_F(Cli, RefusesWrongUsage) {
     expectError(run({"render", path("a.tessera"), "-o", path("b.png"), "--scale", "nan"}), 2, "scale");
     expectError(run({"render", path("a.tessera"), "-o", path("b.png"), "--width", "900000"}), 2,
                 "400 million");
+    expectError(run({"render", path("a.tessera"), "-o", path("b.png"), "--backend", "vulkan"}), 2, "backend");
+    expectError(run({"render", path("a.tessera"), "-o", path("b.png"), "--backend", "gl", "--samples", "16"}),
+                2, "1 or 4 samples");
     EXPECT_EQ(filesInWork(), 2u);
 }
 
@@ -231,6 +234,23 @@ TEST_F(Cli, RendersAtTheSizeThatIsAsked) {
     EXPECT_EQ(sizeOf({"--samples", "1"}, "one.png"), std::pair(60, 40));
     const json j = json::parse(run({"compare", path("one.png"), path("r.png"), "--json"}).out);
     EXPECT_LT(j["mae"], .5);  // two renderers, one picture
+}
+
+TEST_F(Cli, RendersWithOpenGlOrSaysThatThereIsNone) {
+    saveSample("a.tessera");
+    const std::vector<std::string> arguments{"render", path("a.tessera"), "-o", path("gl.png"), "--scale",
+                                             "20",     "--backend",       "gl"};  // of more than one tile
+    const Outcome outcome = run(arguments);
+    if (outcome.exitCode == 0) {
+        ASSERT_EQ(run({"render", path("a.tessera"), "-o", path("cpu.png"), "--scale", "20"}).exitCode, 0);
+        const json j = json::parse(run({"compare", path("gl.png"), path("cpu.png"), "--json"}).out);
+        EXPECT_LT(j["mae"], .1);
+    }
+    setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent.json", 1);
+    const Outcome without = run(arguments);
+    unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
+    EXPECT_NE(without.exitCode, 0);
+    EXPECT_THAT(without.err, HasSubstr("OpenGL 4.5 is not available"));
 }
 
 TEST_F(Cli, ShowsWhatIsInADocument) {

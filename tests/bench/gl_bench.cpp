@@ -1,0 +1,169 @@
+// Frames a second of the OpenGL renderer and of the CPU renderer, and the spline evaluations that a pixel
+// takes: about 2,000 and 20,000 patches, at three sizes of window, redrawn as it is, panned, and with one
+// point dragged.
+//
+//   gl_bench [DOCUMENT...]   documents to draw; without, meshes made for the purpose
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <string>
+
+#include "core/document/codec.h"
+#include "core/export/rasterize.h"
+#include "render/gl_objects.h"
+#include "render/offscreen_gl.h"
+#include "render/renderer.h"
+#include "tests/support/test_meshes.h"
+
+namespace tessera {
+namespace {
+
+struct Size {
+    const char* name;
+    int width, height;
+};
+constexpr Size kSizes[] = {{"768x512", 768, 512}, {"1080p", 1920, 1080}, {"4K", 3840, 2160}};
+
+// The mean time of a frame in milliseconds: after one to warm up, for at least two frames and kSeconds.
+double millisecondsFor(const std::function<void(int)>& frame) {
+    constexpr double kSeconds = 1;
+    frame(0);
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 1;; ++i) {
+        frame(i);
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (i >= 2 && seconds >= kSeconds) return seconds / i * 1e3;
+    }
+}
+
+// A view of the given size that the whole picture fills.
+View filledView(const PatchMesh& mesh, const Size& size) {
+    View view;
+    view.width = size.width;
+    view.height = size.height;
+    view.scale = glm::dvec2(std::max(double(size.width) / mesh.width(), double(size.height) / mesh.height()));
+    return view;
+}
+
+View panned(View view, int frame) {
+    view.origin += glm::dvec2(frame % 7, frame % 5) * 1.37 / view.scale;
+    return view;
+}
+
+// Moves a vertex in the middle back and forth; gives the patches around it.
+std::vector<PatchId> dragVertex(PatchMesh& mesh, int frame) {
+    const HalfedgeMesh& c = mesh.connectivity();
+    VertexId middle;
+    double nearest = 1e30;
+    mesh.forEachVertex([&](VertexId v) {
+        const glm::dvec2 off = toPixels(mesh.position(v)) - glm::dvec2(mesh.width(), mesh.height()) * .5;
+        const double distance = off.x * off.x + off.y * off.y;
+        if (distance >= nearest || c.onBorder(v)) return;
+        nearest = distance;
+        middle = v;
+    });
+    std::vector<PatchId> patches;
+    mesh.setPosition(middle, mesh.position(middle) + LatticePoint{frame % 2 == 0 ? 40 : -40, 0});
+    c.forEachOutgoing(middle, [&](HalfedgeId h) { patches.push_back(c.face(h)); });
+    return patches;
+}
+
+void report(const char* what, double ms) {
+    std::printf("    %-34s %8.1f frames/s  (%.2f ms)\n", what, 1e3 / ms, ms);
+    std::fflush(stdout);
+}
+
+void benchGl(render::Renderer& renderer, const PatchMesh& mesh, const Size& size) {
+    const render::OffscreenTarget target(size.width, size.height);
+    target.bind();
+    const View view = filledView(mesh, size);
+    const auto draw = [&](const View& v, const render::DrawOptions& options) {
+        const auto drawn = renderer.draw(v, options);
+        if (!drawn) std::printf("    %s\n", drawn.error().message.c_str());
+        glFinish();
+    };
+    renderer.setMesh(mesh);
+    for (const int samples : {1, 4}) {
+        const render::DrawOptions options{.samples = samples};
+        std::printf("   OpenGL, %d sample%s a pixel\n", samples, samples > 1 ? "s" : "");
+        report("still", millisecondsFor([&](int) { draw(view, options); }));
+        report("panning", millisecondsFor([&](int frame) { draw(panned(view, frame), options); }));
+        PatchMesh dragged = mesh;
+        size_t bytes = 0;
+        report("one point dragged", millisecondsFor([&](int frame) {
+                   const auto patches = dragVertex(dragged, frame);
+                   renderer.update(dragged, patches);
+                   draw(view, options);
+                   bytes = renderer.uploadedBytes();
+               }));
+        renderer.setMesh(mesh);
+        const auto counts = renderer.drawCounted(view, options);
+        const double pixels = double(size.width) * size.height;
+        if (counts)
+            std::printf(
+                "    evaluations a pixel: %.3f, and %.3f for blur; a drag uploads %zu bytes a frame\n",
+                counts->colours / pixels, counts->blur / pixels, bytes);
+    }
+}
+
+void benchCpu(const PatchMesh& mesh, const Size& size) {
+    const View view = filledView(mesh, size);
+    for (const int samples : {1, 4}) {
+        const std::string name = "CPU, " + std::to_string(samples) + (samples > 1 ? " samples" : " sample");
+        report(name.c_str(), millisecondsFor([&](int) { (void)rasterize(mesh, view, {samples}); }));
+    }
+}
+
+// Curved patches, splines of 16 terms, and a blur on a sixth of the edges.
+PatchMesh madeMesh(int columns, int rows) {
+    PatchMesh mesh = testing::curvedMesh(24 * columns, 24 * rows, columns, rows, 7);
+    mesh.forEachEdge([&](EdgeId e) {
+        EdgeCurve curve = mesh.curve(e);
+        if (!curve.feature || e.index % 2 != 0) return;
+        curve.blurSigma = {.8F, .8F};
+        mesh.setCurve(e, curve);
+    });
+    return mesh;
+}
+
+int run(int argc, char** argv) {
+    std::vector<std::pair<std::string, PatchMesh>> meshes;
+    for (int i = 1; i < argc; ++i) {
+        auto document = loadDocument(argv[i]);
+        if (!document) {
+            std::fprintf(stderr, "%s\n", document.error().message.c_str());
+            return 1;
+        }
+        meshes.emplace_back(argv[i], std::move(document->mesh));
+    }
+    if (meshes.empty()) {
+        meshes.emplace_back("made", madeMesh(39, 26));
+        meshes.emplace_back("made", madeMesh(123, 82));
+    }
+    const auto context = render::OffscreenGl::create();
+    auto renderer = context ? render::Renderer::create() : tl::unexpected(context.error());
+    if (renderer) {
+        const render::GlDevice device = render::currentDevice();
+        std::printf("%s, OpenGL %s%s\n", device.name.c_str(), device.version.c_str(),
+                    device.software ? " (software)" : "");
+    } else {
+        std::printf("%s\n", renderer.error().message.c_str());
+    }
+    for (const auto& [name, mesh] : meshes) {
+        std::printf("%s: %zu patches\n", name.c_str(), mesh.patchCount());
+        for (const Size& size : kSizes) {
+            std::printf("  %s\n", size.name);
+            if (renderer) benchGl(*renderer, mesh, size);
+            benchCpu(mesh, size);
+        }
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace tessera
+
+int main(int argc, char** argv) {
+    return tessera::run(argc, argv);
+}
