@@ -77,7 +77,7 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     mZoom->setMinimumWidth(mZoom->fontMetrics().horizontalAdvance("100,000 %") + 24);
     mZoom->setToolTip(tr("Zoom to 100 %"));
     connect(mZoom, &QPushButton::clicked, this, &StatusBar::zoomClicked);
-    for (QWidget* widget : std::initializer_list<QWidget*>{mCounts, mCursor, mSwatch, mColour, mZoom})
+    for (QWidget* widget : std::initializer_list<QWidget*>{mSelected, mCounts, mCursor, mSwatch, mColour, mZoom})
         addPermanentWidget(widget);
     layout()->setSpacing(12);
     layout()->setContentsMargins(0, 0, 8, 0);
