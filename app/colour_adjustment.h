@@ -1,0 +1,49 @@
+// What sliders have done to the colours of a selection, as long as they can be taken up again.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "app/edit_session.h"
+#include "core/edit/recolour.h"
+
+namespace tessera {
+
+// The values that sliders show: of one kind of recolouring at a time (ColourShift, Levels or Tint).
+//
+// Each gesture recolours the colours from before the first one, so that a slider that goes back to neutral
+// brings them back to the bit, and grey colours remember what they were. That lasts until the selection is
+// another one, something else is changed, or another kind of recolouring is begun: then all is neutral again.
+// Undo and redo bring back what the sliders showed.
+class ColourAdjustment {
+  public:
+    // `set` is what is selected in the session. An EditSession may be open only between begin() and end.
+    ColourAdjustment(DocumentSession& session, PatchSet set);
+
+    const PatchSet& patches() const { return mPatches; }
+    // What has been done, as far as the session's state is one of this adjustment; nothing for others.
+    std::optional<Recolouring> value() const;
+
+    // A gesture: begin, show any number of times, commit or cancel. False, and none is begun, where an
+    // EditSession is open. `kind` is any value of the recolouring that will be shown.
+    bool begin(const QString& text, const Recolouring& kind, const RecolourOptions& options);
+    bool active() const { return mGesture.has_value() && mGesture->open(); }
+    void show(const Recolouring& how);
+    void commit();
+    void cancel() { mGesture.reset(); }
+
+  private:
+    void startFrom(const Recolouring& kind, const RecolourOptions& options);
+
+    QPointer<DocumentSession> mSession;
+    PatchSet mPatches;
+    PatchMesh mBase;
+    double mFeatherPx = 0;
+    Touched mTouched;                         // by all steps since the base
+    std::map<uint64_t, Recolouring> mValues;  // by revision, the base's too; of one kind
+    std::optional<Recolourer> mRecolourer;
+    std::optional<EditSession> mGesture;
+    std::optional<Recolouring> mShown;
+};
+
+}  // namespace tessera

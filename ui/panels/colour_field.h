@@ -1,0 +1,45 @@
+// A colour to look at and to choose: a swatch with a popup, and its hex digits.
+#pragma once
+
+#include <QWidget>
+#include <glm/vec3.hpp>
+
+class QLineEdit;
+
+namespace tessera {
+
+class ColourPopup;
+class SwatchButton;
+
+// Gamma-encoded sRGB, 0..1.
+class ColourField : public QWidget {
+    Q_OBJECT
+
+  public:
+    // `name` says to a person which colour it is.
+    explicit ColourField(const QString& name, QWidget* parent = nullptr);
+
+    glm::dvec3 colour() const { return mColour; }
+    // No signal. Not while the popup is open: there the user has the word.
+    void setColour(glm::dvec3 srgb);
+    // Opens the popup.
+    void edit();
+    bool editing() const;
+
+  signals:
+    // Each choice: any number of previews, then chosen() or abandoned().
+    void previewed(glm::dvec3 srgb);
+    void chosen(glm::dvec3 srgb);
+    void abandoned();  // colour() is the one from before
+
+  private:
+    void show(glm::dvec3 srgb);
+    void enterHex();
+
+    glm::dvec3 mColour{0};
+    SwatchButton* mSwatch;
+    QLineEdit* mHex;
+    ColourPopup* mPopup;
+};
+
+}  // namespace tessera

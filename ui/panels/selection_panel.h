@@ -1,0 +1,75 @@
+// What is selected, how to change it, and the selections that have names.
+#pragma once
+
+#include <QListWidget>
+#include <QPointer>
+#include <QWidget>
+
+#include "app/selection.h"
+
+class QLabel;
+class QLineEdit;
+class QPushButton;
+
+namespace tessera {
+
+class DocumentSession;
+class ToolManager;
+
+// The names of the stored selections. A click or Return recalls one, with Shift added to the selection, with
+// Alt taken from it; F2 or a double click renames it in place; Delete removes it.
+class StoredList : public QListWidget {
+    Q_OBJECT
+
+  public:
+    explicit StoredList(QWidget* parent = nullptr);
+
+  signals:
+    void recalled(const QString& name, tessera::SelectMode mode);
+    void removed(const QString& name);
+
+  protected:
+    void mousePressEvent(QMouseEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+};
+
+class SelectionPanel : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit SelectionPanel(QWidget* parent = nullptr);
+
+    // Null for none.
+    void setSession(DocumentSession* session);
+    // Whose wand says what is similar.
+    void setToolOptions(const ToolManager& tools) { mTools = &tools; }
+
+  signals:
+    // One sentence for the person.
+    void said(const QString& text);
+
+  protected:
+    void showEvent(QShowEvent* event) override;
+
+  private:
+    QWidget* makeButtons();
+    QWidget* makeStoredPart();
+    void refreshSoon();
+    void refresh();
+    void fillStored();
+    void store();
+    void rename(QListWidgetItem* item);
+    // The first "Selection N" that is free.
+    QString freeName() const;
+
+    QPointer<DocumentSession> mSession;
+    const ToolManager* mTools = nullptr;
+    bool mStale = false;
+    QLabel* mCounts;
+    std::vector<QPushButton*> mNeedMesh;       // what can be used where there are patches
+    std::vector<QPushButton*> mNeedSelection;  // and where some are selected
+    StoredList* mStored = nullptr;
+    QLabel* mStoredHint = nullptr;
+};
+
+}  // namespace tessera
