@@ -7,9 +7,14 @@
 #include <QStringList>
 #include <optional>
 
+#include "app/tools/tool_options.h"
+
 namespace tessera {
 
-enum class Theme { Dark, Light };
+enum class Theme { System, Dark, Light };
+
+// Which program's keys the actions have, where the user has not chosen others.
+enum class KeyPreset { Tessera, Illustrator, Inkscape };
 
 // A typed view of one QSettings file in the user's configuration folder. For the UI thread.
 class Settings {
@@ -42,13 +47,35 @@ class Settings {
     bool embedPhoto() const;
     void setEmbedPhoto(bool on);
 
-    // The key that the user chose for an action, if any.
+    KeyPreset keyPreset() const;
+    void setKeyPreset(KeyPreset preset);
+    // The key that the user chose for an action, if any; an empty one is a choice too.
     std::optional<QKeySequence> key(const QString& actionId) const;
+    // None goes back to the preset's.
+    void setKey(const QString& actionId, const std::optional<QKeySequence>& key);
+    void clearKeys();
+
+    // 0 is never.
+    int autosaveSeconds() const;
+    void setAutosaveSeconds(int seconds);
+    // For jobs; 0 is one for each core.
+    int threads() const;
+    void setThreads(int threads);
+    int historyMegabytes() const;
+    void setHistoryMegabytes(int megabytes);
+    size_t historyBytes() const { return size_t(historyMegabytes()) << 20; }
+
+    // What the tools' bar was left at.
+    ToolOptions toolOptions() const;
+    void setToolOptions(const ToolOptions& options);
 
     QByteArray blob(const QString& name) const;
     void setBlob(const QString& name, const QByteArray& bytes);
 
     static constexpr int kMaxRecent = 10;
+    static constexpr int kMinHistoryMegabytes = 16, kMaxHistoryMegabytes = 64 * 1024;
+    static constexpr int kMaxAutosaveSeconds = 3600;
+    static constexpr int kMaxThreads = 256;
 
   private:
     mutable QSettings mSettings;

@@ -7,6 +7,8 @@
 #include <exception>
 #include <new>
 
+#include "core/base/parallel.h"
+
 namespace tessera {
 
 namespace {
@@ -14,10 +16,17 @@ namespace {
 // Progress travels as an integer with a text, which is what QPromise hands from thread to thread.
 constexpr int kProgressSteps = 10000;
 
+// Set and read on the UI thread.
+int gThreadLimit = 0;
+
 }  // namespace
 
 Job::Job(JobKind kind, QString title, QObject* parent)
     : QObject(parent), mKind(kind), mTitle(std::move(title)) {}
+
+void Job::setThreadLimit(int threads) {
+    gThreadLimit = threads;
+}
 
 Job::~Job() {
     stop();
@@ -32,14 +41,16 @@ void Job::startTask(std::function<void(Progress&)> task, std::function<void()> d
         done();
         end();
     });
-    const auto run = [task = std::move(task), token = mStop.get_token()](QPromise<void>& promise) {
+    const auto run = [task = std::move(task), token = mStop.get_token(),
+                      threads = gThreadLimit](QPromise<void>& promise) {
         promise.setProgressRange(0, kProgressSteps);
         Progress progress(token, [&promise](std::string_view stage, double, double total) {
             // From 1: QPromise drops the text that comes with the value it already has.
             promise.setProgressValueAndText(1 + int(total * (kProgressSteps - 1)),
                                             QString::fromUtf8(stage.data(), qsizetype(stage.size())));
         });
-        task(progress);
+        if (threads == 0) return task(progress);
+        withThreads(threads, [&] { task(progress); });
     };
     watcher->setFuture(QtConcurrent::run(run));
 }

@@ -34,6 +34,9 @@ class Job : public QObject {
     double fraction() const { return mFraction; }
     bool stopRequested() const { return mStop.stop_requested(); }
 
+    // How many threads the work of jobs started from now on may use each; 0 is one for each core.
+    static void setThreadLimit(int threads);
+
     // Asks the work to stop. Returns at once; the job then ends with ErrorCode::Stopped.
     void stop() { mStop.request_stop(); }
 

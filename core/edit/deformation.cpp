@@ -2,7 +2,9 @@
 #include "core/edit/deformation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "core/mesh/jacobian.h"
 #include "core/mesh/mesh_validate.h"
@@ -13,6 +15,15 @@ HalfedgeId leaving(const HalfedgeMesh& mesh, EdgeId e, VertexId v) {
     const HalfedgeId h = HalfedgeMesh::halfedge(e);
     return mesh.origin(h) == v ? h : HalfedgeMesh::twin(h);
 }
+
+namespace {
+
+glm::dvec2 handleOf(const PatchMesh& mesh, HalfedgeId h) {
+    const auto points = mesh.controlPoints(h);
+    return toPixels(points[1] - points[0]);
+}
+
+}  // namespace
 
 void alignHandle(PatchMesh& mesh, const SmoothJoin& join, EdgeId turned) {
     const HalfedgeMesh& c = mesh.connectivity();
@@ -25,6 +36,36 @@ void alignHandle(PatchMesh& mesh, const SmoothJoin& join, EdgeId turned) {
     if (length <= 0 || glm::length(own) <= 0) return;
     mesh.setInnerControlPoints(h, toLattice(at + glm::length(own) / length * across), points[2]);
 }
+
+std::optional<SmoothJoin> impliedJoin(const PatchMesh& mesh, VertexId v) {
+    std::vector<HalfedgeId> features;
+    mesh.connectivity().forEachOutgoing(v, [&](HalfedgeId h) {
+        if (mesh.curve(HalfedgeMesh::edge(h)).feature) features.push_back(h);
+    });
+    if (features.size() != 2) return std::nullopt;
+    constexpr double kMostDegrees = 10;
+    const glm::dvec2 a = handleOf(mesh, features[0]), b = handleOf(mesh, features[1]);
+    const double lengths = glm::length(a) * glm::length(b);
+    if (!(lengths > 0) || -glm::dot(a, b) < lengths * std::cos(glm::radians(kMostDegrees)))
+        return std::nullopt;
+    return SmoothJoin{v, HalfedgeMesh::edge(features[0]), HalfedgeMesh::edge(features[1])};
+}
+
+namespace {
+
+// Turns a handle as another one has turned from the start.
+void turnAlong(PatchMesh& mesh, const PatchMesh& start, HalfedgeId model, HalfedgeId turned) {
+    const glm::dvec2 before = handleOf(start, model), after = handleOf(mesh, model);
+    const double lengths = glm::length(before) * glm::length(after);
+    if (!(lengths > 0)) return;
+    const double cosine = glm::dot(before, after) / lengths, sine = cross(before, after) / lengths;
+    const glm::dvec2 own = handleOf(start, turned);
+    const auto points = mesh.controlPoints(turned);
+    const glm::dvec2 to(cosine * own.x - sine * own.y, sine * own.x + cosine * own.y);
+    mesh.setInnerControlPoints(turned, points[0] + toLattice(to), points[2]);
+}
+
+}  // namespace
 
 Deformation::Deformation(PatchMesh start, std::span<const ControlPointRef> points,
                          std::vector<double> weights)
@@ -66,17 +107,11 @@ void Deformation::collect(std::span<const ControlPointRef> points, const std::ve
             mEdges.push_back(HalfedgeMesh::edge(ref.halfedge));
         }
     }
-    std::vector<uint8_t> moving(c.edgeCapacity(), 0), joined(c.edgeCapacity(), 0);
-    for (const EdgeId e : mEdges) moving[e.index] = 1;
-    for (const SmoothJoin& join : mStart.smoothJoins()) {
+    collectJoins();
+    std::vector<uint8_t> joined(c.edgeCapacity(), 0);
+    for (const SmoothJoin& join : mStart.smoothJoins())
         joined[join.first.index] = joined[join.second.index] = 1;
-        if (!moving[join.first.index] && !moving[join.second.index]) continue;
-        mJoins.push_back(join);
-        mEdges.push_back(join.first);
-        mEdges.push_back(join.second);
-    }
-    std::sort(mEdges.begin(), mEdges.end());
-    mEdges.erase(std::unique(mEdges.begin(), mEdges.end()), mEdges.end());
+    for (const SmoothJoin& join : mImplied) joined[join.first.index] = joined[join.second.index] = 1;
     for (const EdgeId e : mEdges) {
         const auto p = mStart.controlPoints(HalfedgeMesh::halfedge(e));
         const bool straight = !joined[e.index] && straightControlPoints(p[0], p[3]) == std::array{p[1], p[2]};
@@ -90,6 +125,36 @@ void Deformation::collect(std::span<const ControlPointRef> points, const std::ve
         edge.handles[h == HalfedgeMesh::halfedge(e) ? 0 : 1] = i;
         edge.straight = false;
     }
+}
+
+// The joins of the edges that move, whose other edges then may move too.
+void Deformation::collectJoins() {
+    const HalfedgeMesh& c = mStart.connectivity();
+    std::vector<uint8_t> moving(c.edgeCapacity(), 0);
+    std::vector<VertexId> ends, known;
+    for (const EdgeId e : mEdges) {
+        moving[e.index] = 1;
+        if (!mStart.curve(e).feature) continue;
+        ends.push_back(c.origin(HalfedgeMesh::halfedge(e)));
+        ends.push_back(c.target(HalfedgeMesh::halfedge(e)));
+    }
+    for (const SmoothJoin& join : mStart.smoothJoins()) {
+        if (!moving[join.first.index] && !moving[join.second.index]) continue;
+        mJoins.push_back(join);
+        known.push_back(join.vertex);
+    }
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    for (const VertexId v : ends)
+        if (std::find(known.begin(), known.end(), v) == known.end())
+            if (const auto join = impliedJoin(mStart, v)) mImplied.push_back(*join);
+    for (const auto* joins : {&mJoins, &mImplied})
+        for (const SmoothJoin& join : *joins) {
+            mEdges.push_back(join.first);
+            mEdges.push_back(join.second);
+        }
+    std::sort(mEdges.begin(), mEdges.end());
+    mEdges.erase(std::unique(mEdges.begin(), mEdges.end()), mEdges.end());
 }
 
 // A patch moves as a whole where its three corners do, away from the border. Its sides' handles then do too.
@@ -151,19 +216,25 @@ void Deformation::moveCurves(PatchMesh& mesh, std::span<const glm::dvec2> ways) 
 }
 
 void Deformation::alignJoins(PatchMesh& mesh, bool breakJoins) const {
+    const auto hasTurned = [&](EdgeId e, VertexId v) {
+        const HalfedgeId h = leaving(mStart.connectivity(), e, v);
+        return mesh.controlPoints(h)[1] - mesh.position(v) != mStart.controlPoints(h)[1] - mStart.position(v);
+    };
     std::vector<SmoothJoin> broken;
     for (const SmoothJoin& join : mJoins) {
-        const auto turned = [&](EdgeId e) {
-            const HalfedgeId h = leaving(mStart.connectivity(), e, join.vertex);
-            return mesh.controlPoints(h)[1] - mesh.position(join.vertex) !=
-                   mStart.controlPoints(h)[1] - mStart.position(join.vertex);
-        };
-        const bool first = turned(join.first), second = turned(join.second);
+        const bool first = hasTurned(join.first, join.vertex), second = hasTurned(join.second, join.vertex);
         if (!first && !second) continue;
         if (breakJoins)
             broken.push_back(join);
         else
             alignHandle(mesh, join, first ? join.second : join.first);
+    }
+    for (const SmoothJoin& join : mImplied) {
+        const bool first = hasTurned(join.first, join.vertex), second = hasTurned(join.second, join.vertex);
+        if (first == second || breakJoins) continue;
+        const HalfedgeId one = leaving(mStart.connectivity(), join.first, join.vertex),
+                         other = leaving(mStart.connectivity(), join.second, join.vertex);
+        turnAlong(mesh, mStart, first ? one : other, first ? other : one);
     }
     std::vector<SmoothJoin> joins = mStart.smoothJoins();
     if (!broken.empty())

@@ -52,7 +52,7 @@ class Deformation {
     };
 
     void collect(std::span<const ControlPointRef> points, const std::vector<double>& weights);
-    void addEdge(EdgeId e);
+    void collectJoins();
     void findRigid();
     LatticePoint step(const Point& point, std::span<const glm::dvec2> ways) const;
     LatticePoint keptOnBorder(LatticePoint at, LatticePoint to) const;
@@ -67,7 +67,8 @@ class Deformation {
     std::vector<uint32_t> mPointOfVertex;
     std::vector<Edge> mMovingEdges;
     std::vector<Patch> mMovingPatches;
-    std::vector<SmoothJoin> mJoins;  // that may have to turn
+    std::vector<SmoothJoin> mJoins;    // that may have to turn
+    std::vector<SmoothJoin> mImplied;  // likewise: features that go on nearly straight, not known as joins
     std::vector<VertexId> mVertices;
     std::vector<EdgeId> mEdges;
     PatchSet mPatches;
@@ -76,6 +77,10 @@ class Deformation {
 
 // The halfedge of e that leaves v, one of its ends.
 HalfedgeId leaving(const HalfedgeMesh& mesh, EdgeId e, VertexId v);
+
+// The two features at a vertex that has exactly two, where they go on nearly straight: people take them for
+// one curve, whether or not it is known as a join.
+std::optional<SmoothJoin> impliedJoin(const PatchMesh& mesh, VertexId v);
 
 // Turns the handle of `turned` at the join's vertex so that it lies straight across from that of the other
 // edge, at its own length. Nothing where either has no length.

@@ -82,7 +82,8 @@ void improve(const std::vector<Weighted>& colours, std::vector<glm::dvec3>& mean
     }
 }
 
-// Half the mean distance from an entry to its nearest.
+// A third of the mean distance from an entry to its nearest: of an entry's own colour a hundredth is the
+// other's.
 double spreadOf(const std::vector<glm::dvec3>& means) {
     if (means.size() < 2) return 1;
     double sum = 0;
@@ -92,7 +93,7 @@ double spreadOf(const std::vector<glm::dvec3>& means) {
             if (a != b) nearest = std::min(nearest, squaredDistance(means[a], means[b]));
         sum += std::sqrt(nearest);
     }
-    return std::max(kSameColour, .5 * sum / double(means.size()));
+    return std::max(kSameColour, sum / (3 * double(means.size())));
 }
 
 }  // namespace

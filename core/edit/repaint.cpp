@@ -39,12 +39,18 @@ double largest(glm::dvec3 d) {
 
 std::vector<PaintedColour> paintedColours(const PatchMesh& mesh, PatchId p, const DomainPoints& points) {
     std::vector<PaintedColour> colours;
-    for (const ColourSample& s : sampleColours(mesh, p, points))
-        colours.push_back({s.srgb, toOklab(s.srgb), {}});
+    for (const ColourSample& s : sampleColours(mesh, p, points)) colours.emplace_back(s.srgb);
     return colours;
 }
 
+glm::dvec3 painted(const Repaint& repaint, const PaintedColour& colour) {
+    return repaint.affine ? (*repaint.affine)(colour.whole) : repaint.function(colour);
+}
+
 }  // namespace
+
+PaintedColour::PaintedColour(glm::dvec3 colour, glm::dvec2 at)
+    : srgb(glm::clamp(colour, 0.0, 1.0)), lab(toOklab(srgb)), point(at), whole(colour) {}
 
 // The colours at the points that repaintings look at, and the factors of refits.
 struct Repainter::Patch {
@@ -65,12 +71,11 @@ struct Repainter::Patch {
         probes = paintedColours(mesh, id, probePoints());
         glm::dvec3 sum(0);
         for (const PaintedColour& c : probes) sum += c.srgb;
-        mean.srgb = sum / double(probes.size());
-        mean.lab = toOklab(mean.srgb);
+        mean = PaintedColour(sum / double(probes.size()));
         for (int c = 0; c < 3; ++c) {
-            beside[c].srgb = mean.srgb;
-            beside[c].srgb[c] += kStep;
-            beside[c].lab = toOklab(beside[c].srgb);
+            glm::dvec3 colour = mean.srgb;
+            colour[c] += colour[c] < .5 ? kStep : -kStep;
+            beside[c] = PaintedColour(colour);
         }
     }
 
@@ -79,8 +84,7 @@ struct Repainter::Patch {
         const BezierTriangle shape = toPixels(mesh.controlPoints(id));
         const auto samples = sampleColours(mesh, id, SplineRefit::points());
         for (size_t i = 0; i < samples.size(); ++i) {
-            colours.push_back(
-                {samples[i].srgb, toOklab(samples[i].srgb), evaluate(shape, SplineRefit::barycentrics()[i])});
+            colours.emplace_back(samples[i].srgb, evaluate(shape, SplineRefit::barycentrics()[i]));
             alphas.push_back(samples[i].alpha);
         }
         refit.emplace(mesh.spline(id));
@@ -90,11 +94,12 @@ struct Repainter::Patch {
     std::optional<AffineColour> linearized(const Repaint& repaint) const {
         AffineColour change;
         const glm::dvec3 at = repaint.function(mean);
-        for (int c = 0; c < 3; ++c) change.matrix[c] = (repaint.function(beside[c]) - at) / kStep;
+        for (int c = 0; c < 3; ++c)
+            change.matrix[c] = (repaint.function(beside[c]) - at) / (beside[c].srgb[c] - mean.srgb[c]);
         change.offset = at - change.matrix * mean.srgb;
         double sum = 0;
         for (const PaintedColour& probe : probes) {
-            const glm::dvec3 off = glm::abs(change(probe.srgb) - repaint.function(probe));
+            const glm::dvec3 off = glm::abs(change(probe.whole) - painted(repaint, probe));
             if (largest(off) > kLinearMost) return std::nullopt;
             sum += off.x + off.y + off.z;
         }
@@ -127,12 +132,10 @@ std::optional<PatchSpline> Repainter::refitted(const PatchMesh& mesh, Patch& pat
     std::vector<float> planes(n * kMaxChannels);
     double most = 0;
     for (size_t i = 0; i < n; ++i) {
-        const glm::dvec3 colour = patch.colours[i].srgb;
-        const glm::dvec3 full =
-            repaint.affine ? (*repaint.affine)(colour) : repaint.function(patch.colours[i]);
-        const glm::dvec3 painted = patch.even ? full : glm::mix(colour, full, patch.weights[i]);
-        most = std::max(most, largest(painted - colour));
-        for (int c = 0; c < 3; ++c) planes[size_t(c) * n + i] = float(painted[c] * patch.alphas[i]);
+        const glm::dvec3 colour = patch.colours[i].whole, full = painted(repaint, patch.colours[i]);
+        const glm::dvec3 mixture = patch.even ? full : glm::mix(colour, full, patch.weights[i]);
+        most = std::max(most, largest(mixture - colour));
+        for (int c = 0; c < 3; ++c) planes[size_t(c) * n + i] = float(mixture[c] * patch.alphas[i]);
         planes[3 * n + i] = float(patch.alphas[i]);
     }
     if (most < kNoChange) return std::nullopt;

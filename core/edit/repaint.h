@@ -14,11 +14,16 @@
 
 namespace tessera {
 
-// A colour as a repainting sees it: gamma-encoded sRGB, not premultiplied, the same in OKLab, and where.
+// A colour as a repainting sees it, and where. Splines overshoot 0..1; functions are asked for the colour
+// that a screen shows, since beyond it OKLab's roots make the wildest things of little.
 struct PaintedColour {
-    glm::dvec3 srgb{0};
-    glm::dvec3 lab{0};
+    glm::dvec3 srgb{0};   // gamma-encoded, not premultiplied, within 0..1
+    glm::dvec3 lab{0};    // the same in OKLab
     glm::dvec2 point{0};  // px
+    glm::dvec3 whole{0};  // srgb before it was brought into 0..1
+
+    PaintedColour() = default;
+    explicit PaintedColour(glm::dvec3 colour, glm::dvec2 at = {});
 };
 
 struct Repaint {

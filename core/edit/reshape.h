@@ -48,7 +48,8 @@ struct PointMove {
 // One drag. What goes along with the points that are dragged:
 // - the handles (inner control points) at a vertex go with it; straight edges without a smooth join stay
 //   straight; interior points follow the sides of their patch;
-// - where two curves join smoothly and one handle turns, the other one turns with it;
+// - where two curves join smoothly and one handle turns, the other one turns with it, also where two features
+//   go on nearly straight without being known as a join;
 // - vertices on the picture's border slide along it, its corners stay, and so do handles of border edges.
 // Where the goal would fold a patch or move a locked one, the drag goes as far as is certified and slides
 // along the limit.

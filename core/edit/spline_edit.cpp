@@ -175,21 +175,6 @@ PatchSpline newtonSpline(const NewtonBasis& basis, const MatrixXd& factors) {
     return spline;
 }
 
-// The places among the sites that are nearest to the default centres.
-std::vector<uint8_t> usualSites() {
-    std::vector<uint8_t> sites;
-    for (const glm::dvec2 c : defaultCentres()) {
-        const auto& all = centreSites();
-        const auto nearest = std::min_element(all.begin(), all.end(), [&](glm::dvec2 a, glm::dvec2 b) {
-            const glm::dvec2 da = a - c, db = b - c;
-            return da.x * da.x + da.y * da.y < db.x * db.x + db.y * db.y;
-        });
-        const auto site = uint8_t(nearest - all.begin());
-        if (std::find(sites.begin(), sites.end(), site) == sites.end()) sites.push_back(site);
-    }
-    return sites;
-}
-
 // Further sites, where `left` (points x channels, the points are the sites) is largest.
 void addSites(const MatrixXd& left, std::vector<uint8_t>& sites) {
     constexpr int kAtOnce = 6;
@@ -204,6 +189,20 @@ void addSites(const MatrixXd& left, std::vector<uint8_t>& sites) {
 }
 
 }  // namespace
+
+std::vector<uint8_t> usualSites() {
+    std::vector<uint8_t> sites;
+    for (const glm::dvec2 c : defaultCentres()) {
+        const auto& all = centreSites();
+        const auto nearest = std::min_element(all.begin(), all.end(), [&](glm::dvec2 a, glm::dvec2 b) {
+            const glm::dvec2 da = a - c, db = b - c;
+            return da.x * da.x + da.y * da.y < db.x * db.x + db.y * db.y;
+        });
+        const auto site = uint8_t(nearest - all.begin());
+        if (std::find(sites.begin(), sites.end(), site) == sites.end()) sites.push_back(site);
+    }
+    return sites;
+}
 
 struct SplineRefit::System {
     std::vector<uint8_t> sites;  // empty: the default centres

@@ -52,6 +52,9 @@ class SplineRefit {
     std::unique_ptr<System> mSystem;
 };
 
+// The places among the sites that are nearest to the default centres, the corners first.
+std::vector<uint8_t> usualSites();
+
 constexpr double kRefitTolerance = .35 / 255;
 
 }  // namespace tessera

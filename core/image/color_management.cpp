@@ -31,13 +31,18 @@ Profile linearSrgbProfile() {
     return linearRgbProfile({0.3127, 0.3290, 1}, {{0.64, 0.33, 1}, {0.30, 0.60, 1}, {0.15, 0.06, 1}});
 }
 
-std::shared_ptr<void> makeTransform(const Profile& from, cmsUInt32Number type, cmsUInt32Number flags) {
-    const Profile to = linearSrgbProfile();
+// To samples of TYPE_RGB_FLT.
+std::shared_ptr<void> makeTransform(const Profile& from, cmsUInt32Number type, const Profile& to,
+                                    cmsUInt32Number flags) {
     if (!from || !to) return nullptr;
     // lcms2's cache of the last pixel is shared by threads.
     cmsHTRANSFORM transform = cmsCreateTransform(from.get(), type, to.get(), TYPE_RGB_FLT,
                                                  INTENT_RELATIVE_COLORIMETRIC, flags | cmsFLAGS_NOCACHE);
     return transform ? std::shared_ptr<void>(transform, cmsDeleteTransform) : nullptr;
+}
+
+std::shared_ptr<void> makeTransform(const Profile& from, cmsUInt32Number type, cmsUInt32Number flags) {
+    return makeTransform(from, type, linearSrgbProfile(), flags);
 }
 
 float oddPower(float x, double exponent) {
@@ -166,6 +171,20 @@ void ColorConverter::convert(std::span<float> samples, size_t count, std::span<f
             rgb[3 * i + c] = std::isfinite(value) ? encodeSrgb(value) : 0;
         }
     }
+}
+
+std::optional<ProfileTarget> ProfileTarget::of(std::span<const uint8_t> icc) {
+    const Profile to = own(cmsOpenProfileFromMem(icc.data(), cmsUInt32Number(icc.size())));
+    if (!to || cmsGetColorSpace(to.get()) != cmsSigRgbData) return {};
+    ProfileTarget target;
+    target.mTransform = makeTransform(linearSrgbProfile(), TYPE_RGB_FLT, to, 0);
+    if (!target.mTransform) return {};
+    return target;
+}
+
+void ProfileTarget::convert(std::span<float> rgb) const {
+    for (float& value : rgb) value = decodeSrgb(value);
+    cmsDoTransform(mTransform.get(), rgb.data(), rgb.data(), cmsUInt32Number(rgb.size() / 3));
 }
 
 std::vector<uint8_t> srgbProfile() {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,6 +48,19 @@ class ColorConverter {
     double mGamma = 1;
     bool mExpandGrey = false;          // the profile wants grey as three equal channels
     std::shared_ptr<void> mTransform;  // lcms2's, to linear light with sRGB's primaries
+};
+
+// The way back: from gamma-encoded sRGB to the samples of an ICC profile, relative colorimetric.
+class ProfileTarget {
+  public:
+    // None where `icc` is no profile of an RGB space that can be written to.
+    static std::optional<ProfileTarget> of(std::span<const uint8_t> icc);
+
+    // Pixels of three values, changed in place. Safe to use from several threads at once.
+    void convert(std::span<float> rgb) const;
+
+  private:
+    std::shared_ptr<void> mTransform;  // lcms2's, from linear light with sRGB's primaries
 };
 
 // A profile of sRGB to embed in files that have no other way to say so; the same bytes at every call.

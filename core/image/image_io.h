@@ -1,10 +1,13 @@
 // Pictures from and to files, through OpenImageIO and lcms2.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
 
@@ -54,17 +57,26 @@ enum class PictureFormat { Png, Jpeg, Tiff, Exr };
 struct WriteOptions {
     int bitsPerChannel = 8;  // 8 or 16 for PNG and TIFF; JPEG is 8, EXR is half float, linear
     int jpegQuality = 95;    // 1..100
+    // The colour that the picture is composed over, gamma-encoded sRGB; where there is none, transparency is
+    // kept (JPEG: composed over white).
+    std::optional<std::array<float, 3>> background = {};
+    bool embedProfile = true;  // EXR has none
+    // Colours are converted to this profile's (relative colorimetric); sRGB where it is empty, is not one of
+    // an RGB space that can be written to, and in an EXR.
+    std::vector<uint8_t> iccProfile = {};
 };
 
 // The format that a path's suffix asks for; Usage where there is none that we write.
 Result<PictureFormat> pictureFormatFor(const std::string& path);
 
 // Writes a working-space image, un-premultiplied as the format wants it, clamped to the format's range,
-// tagged as sRGB (EXR: linear, premultiplied). JPEG has no alpha: it is composed over white. The file appears
-// whole or not at all: a temporary beside it is synced and renamed. Fails with CannotWrite.
-Result<void> writeImage(const Image& image, const std::string& path, const WriteOptions& options = {});
+// tagged with its colour space (EXR: linear, premultiplied). The file appears whole or not at all: a
+// temporary beside it is synced and renamed. `progress`, where given, is stepped within the caller's stage.
+// Fails with CannotWrite, or with Stopped.
+Result<void> writeImage(const Image& image, const std::string& path, const WriteOptions& options = {},
+                        Progress* progress = nullptr);
 
-// The picture as the bytes of a PNG of 8 bits a channel, as writeImage would write it.
+// The picture as the bytes of a PNG of 8 bits a channel, as writeImage would write it without a profile.
 Result<std::vector<uint8_t>> encodePng(const Image& image);
 
 }  // namespace tessera

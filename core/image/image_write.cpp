@@ -71,88 +71,152 @@ float clamped(float value) {
     return value > 0 ? std::min(value, 1.f) : 0;
 }
 
-void convertPixel(const Image& image, size_t at, PictureFormat format, float scale, uint16_t* out) {
-    const float alpha = clampedAlpha(image, at);
-    const bool keepAlpha = image.hasAlpha() && format != PictureFormat::Jpeg;
-    if (format == PictureFormat::Exr) {
-        constexpr float kMaxHalf = 65504;
-        const std::array<float, 3> color = straightColor(image, at, alpha);
-        for (size_t c = 0; c < 3; ++c)
-            out[c] = half(std::clamp(decodeSrgb(color[c]) * alpha, -kMaxHalf, kMaxHalf)).bits();
-        if (keepAlpha) out[3] = half(alpha).bits();
-        return;
+// What is to be written, decided once.
+struct Encoding {
+    PictureFormat format;
+    WriteOptions options;
+    int bits = 8;  // of integers
+    bool keepAlpha = false;
+    std::optional<ProfileTarget> target;  // none: sRGB
+
+    Encoding(const Image& image, PictureFormat f, const WriteOptions& o)
+        : format(f), options(o), bits(f == PictureFormat::Jpeg ? 8 : o.bitsPerChannel) {
+        if (format == PictureFormat::Jpeg && !options.background) options.background = {1, 1, 1};
+        keepAlpha = image.hasAlpha() && !options.background;
+        if (format != PictureFormat::Exr && !options.iccProfile.empty())
+            target = ProfileTarget::of(options.iccProfile);
     }
-    const auto quantized = [&](float value) { return uint16_t(std::lround(clamped(value) * scale)); };
-    if (keepAlpha) {
-        const std::array<float, 3> color = straightColor(image, at, alpha);
-        for (size_t c = 0; c < 3; ++c) out[c] = quantized(color[c]);
-        out[3] = quantized(alpha);
-    } else {
-        for (size_t c = 0; c < 3; ++c) out[c] = quantized(image.plane(int(c))[at] + (1 - alpha));
+    int channels() const { return keepAlpha ? 4 : 3; }
+};
+
+// The colour that a pixel of the file has, in gamma-encoded sRGB: of itself where alpha goes along, else over
+// the background.
+std::array<float, 3> fileColor(const Image& image, size_t at, float alpha, const Encoding& encoding) {
+    if (encoding.keepAlpha) return straightColor(image, at, alpha);
+    const std::array<float, 3> background = encoding.options.background.value_or(std::array<float, 3>{});
+    std::array<float, 3> color{};
+    for (size_t c = 0; c < 3; ++c) {
+        const float value = image.plane(int(c))[at];
+        color[c] = (std::isfinite(value) ? value : 0) + (1 - alpha) * background[c];
+    }
+    return color;
+}
+
+uint16_t fileSample(float value, const Encoding& encoding) {
+    return uint16_t(std::lround(clamped(value) * (encoding.bits == 16 ? 65535.f : 255.f)));
+}
+
+// The samples of pixels `begin` to `end`.
+void convertPixels(const Image& image, size_t begin, size_t end, const Encoding& encoding, uint16_t* out) {
+    std::vector<float> colors;
+    colors.reserve(3 * (end - begin));
+    for (size_t i = begin; i < end; ++i)
+        for (const float value : fileColor(image, i, clampedAlpha(image, i), encoding))
+            colors.push_back(value);
+    if (encoding.target) encoding.target->convert(colors);
+    const size_t channels = size_t(encoding.channels());
+    for (size_t i = begin; i < end; ++i, out += channels) {
+        const float alpha = clampedAlpha(image, i);
+        const float* color = &colors[3 * (i - begin)];
+        if (encoding.format == PictureFormat::Exr) {
+            constexpr float kMaxHalf = 65504;
+            const float cover = encoding.keepAlpha ? alpha : 1;
+            for (size_t c = 0; c < 3; ++c)
+                out[c] = half(std::clamp(decodeSrgb(color[c]) * cover, -kMaxHalf, kMaxHalf)).bits();
+            if (encoding.keepAlpha) out[3] = half(alpha).bits();
+        } else {
+            for (size_t c = 0; c < 3; ++c) out[c] = fileSample(color[c], encoding);
+            if (encoding.keepAlpha) out[3] = fileSample(alpha, encoding);
+        }
     }
 }
 
-Samples convert(const Image& image, PictureFormat format, int bits) {
+Samples convert(const Image& image, const Encoding& encoding) {
     Samples samples;
-    samples.channels = image.hasAlpha() && format != PictureFormat::Jpeg ? 4 : 3;
+    samples.channels = encoding.channels();
     samples.values.resize(image.planeSize() * size_t(samples.channels));
-    const float scale = bits == 16 ? 65535 : 255;
     constexpr size_t kGrain = 16384;
     parallelFor(image.planeSize(), kGrain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
-            convertPixel(image, i, format, scale, &samples.values[i * size_t(samples.channels)]);
+        convertPixels(image, begin, end, encoding, &samples.values[begin * size_t(samples.channels)]);
     });
     return samples;
 }
 
-OIIO::ImageSpec specFor(const Image& image, const Samples& samples, PictureFormat format,
-                        const WriteOptions& options) {
-    const OIIO::TypeDesc type = format == PictureFormat::Exr   ? OIIO::TypeDesc::HALF
-                                : options.bitsPerChannel == 16 ? OIIO::TypeDesc::UINT16
-                                                               : OIIO::TypeDesc::UINT8;
+OIIO::ImageSpec specFor(const Image& image, const Samples& samples, const Encoding& encoding) {
+    const PictureFormat format = encoding.format;
+    const OIIO::TypeDesc type = format == PictureFormat::Exr ? OIIO::TypeDesc::HALF
+                                : encoding.bits == 16        ? OIIO::TypeDesc::UINT16
+                                                             : OIIO::TypeDesc::UINT8;
     OIIO::ImageSpec spec(image.width(), image.height(), samples.channels, type);
     // Without these two some writers put the time of writing and a version into the file: the same picture
     // shall give the same bytes.
     spec.attribute("DateTime", "2000:01:01 00:00:00");
     spec.attribute("Software", "Tessera");
     if (format == PictureFormat::Png) spec.erase_attribute("DateTime");
-    spec.attribute("oiio:ColorSpace", format == PictureFormat::Exr ? "Linear" : "sRGB");
+    if (format == PictureFormat::Exr) spec.attribute("oiio:ColorSpace", "Linear");
     if (format != PictureFormat::Exr) spec.attribute("oiio:UnassociatedAlpha", 1);
-    if (format == PictureFormat::Jpeg || format == PictureFormat::Tiff) {
-        const std::vector<uint8_t> icc = srgbProfile();
+    if (format != PictureFormat::Exr && encoding.options.embedProfile) {
+        const std::vector<uint8_t> icc = encoding.target ? encoding.options.iccProfile : srgbProfile();
         spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, int(icc.size())), icc.data());
+    } else if (format != PictureFormat::Exr && !encoding.target) {
+        spec.attribute("oiio:ColorSpace", "sRGB");
     }
     if (format == PictureFormat::Jpeg) {
-        spec.attribute("Compression", "jpeg:" + std::to_string(options.jpegQuality));
+        spec.attribute("Compression", "jpeg:" + std::to_string(encoding.options.jpegQuality));
         spec.attribute("jpeg:subsampling", "4:4:4");
     }
     if (format == PictureFormat::Tiff) spec.attribute("Compression", "zip");
     return spec;
 }
 
-// Writes to `path`, or into `bytes` where that is not null. Returns the reason of a failure.
-std::string writeSamples(const OIIO::ImageSpec& spec, const Samples& samples, PictureFormat format,
-                         const std::string& path, std::vector<uint8_t>* bytes) {
+// Rows from y on, as the file wants them.
+bool writeRows(OIIO::ImageOutput& output, const OIIO::ImageSpec& spec, const Samples& samples, int y,
+               int end) {
+    const size_t row = size_t(spec.width) * size_t(samples.channels);
+    const std::span<const uint16_t> rows(&samples.values[size_t(y) * row], size_t(end - y) * row);
+    if (spec.format != OIIO::TypeDesc::UINT8)
+        return output.write_scanlines(y, end, 0, spec.format, rows.data());
+    const std::vector<uint8_t> narrow(rows.begin(), rows.end());
+    return output.write_scanlines(y, end, 0, OIIO::TypeDesc::UINT8, narrow.data());
+}
+
+// Where a file is written to: a path, or bytes where those are not null. `name` is for messages.
+struct Destination {
+    std::string name;
+    std::string path;
+    std::vector<uint8_t>* bytes = nullptr;
+};
+
+Result<void> writeSamples(const OIIO::ImageSpec& spec, const Samples& samples, const Encoding& encoding,
+                          const Destination& to, Progress* progress) {
+    const auto failed = [&](std::string why) {
+        if (why.empty()) why = "the encoder gave up";
+        return cannotWrite(to.name, why + "; check the disk and try again");
+    };
     std::unique_ptr<OIIO::Filesystem::IOVecOutput> memory;
-    const auto output = OIIO::ImageOutput::create(writerName(format));
-    if (!output) return OIIO::geterror();
+    const auto output = OIIO::ImageOutput::create(writerName(encoding.format));
+    if (!output) return failed(OIIO::geterror());
     OIIO::ImageSpec opened = spec;
-    if (bytes) {
-        memory = std::make_unique<OIIO::Filesystem::IOVecOutput>(*bytes);
+    if (to.bytes) {
+        memory = std::make_unique<OIIO::Filesystem::IOVecOutput>(*to.bytes);
         OIIO::Filesystem::IOProxy* proxy = memory.get();
         opened.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     }
-    bool ok = output->open(path, opened);
-    if (ok && spec.format == OIIO::TypeDesc::UINT8) {
-        const std::vector<uint8_t> narrow(samples.values.begin(), samples.values.end());
-        ok = output->write_image(OIIO::TypeDesc::UINT8, narrow.data());
-    } else if (ok) {
-        ok = output->write_image(spec.format, samples.values.data());
+    bool ok = output->open(to.path, opened);
+    constexpr int kRows = 64;
+    for (int y = 0; ok && y < spec.height; y += kRows) {
+        const int end = std::min(y + kRows, spec.height);
+        ok = writeRows(*output, spec, samples, y, end);
+        // Not before the first rows: libpng complains on stderr of files without any.
+        if (progress && !progress->step(double(end) / spec.height)) {
+            output->close();
+            return stopped();
+        }
     }
     ok = output->close() && ok;
     const std::string why = output->geterror();
-    if (ok) return {};
-    return why.empty() ? "the encoder gave up" : why;
+    if (!ok) return failed(why);
+    return {};
 }
 
 std::string optionsDefect(const Image& image, PictureFormat format, const WriteOptions& options) {
@@ -169,21 +233,16 @@ std::string optionsDefect(const Image& image, PictureFormat format, const WriteO
     return {};
 }
 
-// To `path`, or into `bytes` where that is not null; `name` is for messages.
 Result<void> writeTo(const Image& image, PictureFormat format, const WriteOptions& options,
-                     const std::string& name, const std::string& path, std::vector<uint8_t>* bytes) {
-    if (std::string why = optionsDefect(image, format, options); !why.empty()) return cannotWrite(name, why);
+                     const Destination& to, Progress* progress) {
+    if (std::string why = optionsDefect(image, format, options); !why.empty())
+        return cannotWrite(to.name, why);
     try {
-        const int bits = format == PictureFormat::Jpeg ? 8 : options.bitsPerChannel;
-        WriteOptions used = options;
-        used.bitsPerChannel = bits;
-        const Samples samples = convert(image, format, bits);
-        const std::string why =
-            writeSamples(specFor(image, samples, format, used), samples, format, path, bytes);
-        if (!why.empty()) return cannotWrite(name, why + "; check the disk and try again");
-        return {};
+        const Encoding encoding(image, format, options);
+        const Samples samples = convert(image, encoding);
+        return writeSamples(specFor(image, samples, encoding), samples, encoding, to, progress);
     } catch (const std::exception& e) {
-        return cannotWrite(name, std::string(e.what()) + "; close other programs and try again");
+        return cannotWrite(to.name, std::string(e.what()) + "; close other programs and try again");
     }
 }
 
@@ -199,18 +258,21 @@ Result<PictureFormat> pictureFormatFor(const std::string& path) {
                                          "\" from its name; end it with .png, .jpg, .tif or .exr");
 }
 
-Result<void> writeImage(const Image& image, const std::string& path, const WriteOptions& options) {
+Result<void> writeImage(const Image& image, const std::string& path, const WriteOptions& options,
+                        Progress* progress) {
     const Result<PictureFormat> format = pictureFormatFor(path);
     if (!format) return tl::unexpected(format.error());
     return writeFileAtomically(path, [&](const std::string& temporary) {
-        return writeTo(image, *format, options, path, temporary, nullptr);
+        return writeTo(image, *format, options, {.name = path, .path = temporary}, progress);
     });
 }
 
 Result<std::vector<uint8_t>> encodePng(const Image& image) {
     std::vector<uint8_t> bytes;
-    Result<void> written = writeTo(image, PictureFormat::Png, {}, "picture.png", "picture.png", &bytes);
-    if (!written) return tl::unexpected(written.error());
+    const WriteOptions options{.embedProfile = false};
+    const Destination to{.name = "picture.png", .path = "picture.png", .bytes = &bytes};
+    if (auto written = writeTo(image, PictureFormat::Png, options, to, nullptr); !written)
+        return tl::unexpected(written.error());
     return bytes;
 }
 

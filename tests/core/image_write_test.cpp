@@ -3,12 +3,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
 
+#include "core/image/color_management.h"
 #include "core/image/image_io.h"
 #include "tests/support/temporary_folder.h"
 
@@ -106,6 +108,73 @@ TEST_F(ImageWrite, JpegComposesOverWhite) {
     EXPECT_NEAR(read.at(8, 8, 1), .5f, .012f);
 }
 
+TEST_F(ImageWrite, ComposesOverABackground) {
+    Image image(16, 16, 4);
+    for (size_t i = 0; i < image.planeSize(); ++i) {
+        image.plane(0)[i] = .25f;
+        image.plane(3)[i] = .5f;
+    }
+    const WriteOptions options{.background = std::array{.2f, .4f, 1.f}};
+    for (const char* name : {"a.png", "a.tif", "a.exr", "a.jpg"}) {
+        const Image read = writtenAndRead(image, name, options);
+        ASSERT_EQ(read.channels(), 3) << name;
+        EXPECT_NEAR(read.at(8, 8, 0), .35f, .012f) << name;
+        EXPECT_NEAR(read.at(8, 8, 1), .2f, .012f) << name;
+        EXPECT_NEAR(read.at(8, 8, 2), .5f, .012f) << name;
+    }
+}
+
+TEST_F(ImageWrite, EmbedsAProfileWhereItIsWanted) {
+    const Image image = picture(9, 8, 3, 255);
+    for (const char* name : {"a.png", "a.tif", "a.jpg"})
+        for (const bool embed : {false, true}) {
+            ASSERT_TRUE(writeImage(image, at(name), {.embedProfile = embed}));
+            EXPECT_EQ(!readImage(at(name))->source.iccProfile.empty(), embed) << name;
+        }
+}
+
+// A profile that swaps red and blue, as far as its tags go: whoever honours it sees the picture as it was.
+TEST_F(ImageWrite, ConvertsToAProfile) {
+    std::vector<uint8_t> icc = srgbProfile();
+    const auto find = [&](std::string_view tag) {
+        return std::search(icc.begin() + 128, icc.end(), tag.begin(), tag.end());
+    };
+    const auto red = find("rXYZ"), blue = find("bXYZ");
+    ASSERT_TRUE(red != icc.end() && blue != icc.end());
+    std::swap_ranges(red, red + 4, blue);
+    const Image image = picture(20, 10, 4, 255);
+    for (const char* name : {"a.png", "a.tif"}) {
+        const WriteOptions options{.bitsPerChannel = 16, .iccProfile = icc};
+        expectNear(writtenAndRead(image, name, options), image, .001f);
+        EXPECT_EQ(readImage(at(name))->source.iccProfile, icc);
+        ASSERT_TRUE(
+            writeImage(image, at(name), {.bitsPerChannel = 16, .embedProfile = false, .iccProfile = icc}));
+        const Image bare = readImage(at(name))->image;
+        EXPECT_NEAR(bare.at(7, 3, 0), image.at(7, 3, 2), .001f) << name;
+        EXPECT_NEAR(bare.at(7, 3, 2), image.at(7, 3, 0), .001f) << name;
+    }
+    const WriteOptions rubbish{.iccProfile = {1, 2, 3}};
+    expectNear(writtenAndRead(image, "b.png", rubbish), image, 1.f / 255);
+}
+
+TEST_F(ImageWrite, StopsBetweenRowsAndLeavesNothing) {
+    const Image image = picture(300, 300, 3, 255);
+    std::stop_source stop;
+    int reports = 0;
+    Progress progress(stop.get_token(), [&](std::string_view, double, double) { ++reports; });
+    progress.beginStage("writing", 1);
+    ASSERT_TRUE(writeImage(image, at("a.png"), {}, &progress));
+    EXPECT_GT(reports, 0);
+    fs::remove(at("a.png"));
+    stop.request_stop();
+    for (const char* name : {"a.png", "a.tif", "a.exr", "a.jpg"}) {
+        const Result<void> written = writeImage(image, at(name), {}, &progress);
+        ASSERT_FALSE(written) << name;
+        EXPECT_EQ(written.error().code, ErrorCode::Stopped) << name;
+    }
+    EXPECT_TRUE(fs::is_empty(mFolder));
+}
+
 TEST_F(ImageWrite, ClampsAndSurvivesNan) {
     Image image(3, 1, 3);
     image.at(0, 0, 0) = 2;
@@ -130,7 +199,7 @@ TEST_F(ImageWrite, SamePictureGivesTheSameBytes) {
 
 TEST_F(ImageWrite, EncodePngIsWhatWriteImageWrites) {
     const Image image = picture(20, 10, 4, 255);
-    ASSERT_TRUE(writeImage(image, at("a.png")));
+    ASSERT_TRUE(writeImage(image, at("a.png"), {.embedProfile = false}));
     const Result<std::vector<uint8_t>> bytes = encodePng(image);
     ASSERT_TRUE(bytes) << bytes.error().message;
     EXPECT_EQ(std::string(bytes->begin(), bytes->end()), contentOf("a.png"));
