@@ -9,7 +9,7 @@
 #include <QMimeData>
 
 #include "app/file_service.h"
-#include "ui/export_dialog.h"
+#include "ui/dialogs/export_dialog.h"
 #include "ui/main_window.h"
 #include "ui/message_bar.h"
 
@@ -68,7 +68,8 @@ void MainWindow::chooseAndSave(std::function<void()> then) {
 void MainWindow::chooseAndExport() {
     const DocumentSession* session = mWorkspace.session();
     if (!session || !session->hasMesh()) return;
-    ExportDialog dialog({session->width(), session->height()}, this);
+    ExportDialog dialog({session->width(), session->height()}, session->document().source.iccProfile,
+                        mSettings, this);
     if (dialog.exec() != QDialog::Accepted) return;
     ExportRequest request = dialog.request();
     const QString suggested = session->suggestedPath(dialog.suffix());
