@@ -191,6 +191,16 @@ Result<std::vector<ChunkSize>> chunkSizes(std::span<const uint8_t> bytes) {
     });
 }
 
+Result<std::vector<uint8_t>> readPreview(std::span<const uint8_t> bytes) {
+    const auto chunks = unpackChunks(bytes, kFormatVersion);
+    if (!chunks) return tl::unexpected<Error>(chunks.error());
+    std::vector<uint8_t> png;
+    const auto read = ChunkIndex(*chunks).optional(
+        kPreview, [&](std::span<const uint8_t> b) { return readInflated(b, png); });
+    if (!read) return tl::unexpected<Error>(read.error());
+    return png;
+}
+
 bool looksLikeDocument(std::span<const uint8_t> bytes) {
     return startsLikeChunkFile(bytes);
 }

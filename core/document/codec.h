@@ -30,6 +30,9 @@ Result<Document> decodeDocument(std::span<const uint8_t> bytes);
 // The sizes of a document's chunks, in file order.
 Result<std::vector<ChunkSize>> chunkSizes(std::span<const uint8_t> bytes);
 
+// The PNG of a document's preview, empty where it has none. Decodes nothing else.
+Result<std::vector<uint8_t>> readPreview(std::span<const uint8_t> bytes);
+
 // Whether bytes begin like a document.
 bool looksLikeDocument(std::span<const uint8_t> bytes);
 
