@@ -6,6 +6,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "app/mesh_damage.h"
+
 namespace tessera {
 
 namespace {
@@ -34,6 +36,16 @@ bool sameView(const View& a, const View& b) {
     return a.origin == b.origin && a.scale == b.scale && a.width == b.width && a.height == b.height;
 }
 
+FrameSource::FrameSource(QObject* parent) : QObject(parent) {
+    mDrawSoon.setSingleShot(true);
+    connect(&mDrawSoon, &QTimer::timeout, this, &FrameSource::startNext);
+}
+
+void FrameSource::setDrawer(std::unique_ptr<FrameDrawer> drawer) {
+    mDrawer = std::move(drawer);
+    setMesh(mMesh);
+}
+
 void FrameSource::setMesh(PatchMesh mesh) {
     delete mJob;
     mJob = nullptr;
@@ -43,22 +55,32 @@ void FrameSource::setMesh(PatchMesh mesh) {
     mDirty.reset();
     mOverviewOld = false;
     mMesh = std::move(mesh);
-    startNext();
+    if (mDrawer && mMesh.patchCount() > 0) mDrawer->setMesh(mMesh);
+    startSoon();
 }
 
-void FrameSource::updateMesh(PatchMesh mesh, const Rect& dirty) {
+void FrameSource::updateMesh(PatchMesh mesh, const Touched& touched) {
+    const Rect dirty = damagedArea(mMesh, mesh, touched);
     mMesh = std::move(mesh);
     mDirty = mDirty ? united(*mDirty, dirty) : dirty;
     mOverviewOld = true;
+    if (mDrawer && touched.topology)
+        mDrawer->setMesh(mMesh);
+    else if (mDrawer)
+        mDrawer->update(mMesh, touched.patches);
     if (mJob && mRefining) mJob->stop();
-    startNext();
+    startSoon();
+}
+
+void FrameSource::startSoon() {
+    mDrawer ? mDrawSoon.start(0) : startNext();
 }
 
 void FrameSource::request(const View& view) {
     if (mWish && sameView(*mWish, view)) return;
     mWish = view;
     if (mJob && mRefining) mJob->stop();
-    startNext();
+    startSoon();
 }
 
 bool FrameSource::settled() const {
@@ -67,7 +89,7 @@ bool FrameSource::settled() const {
 }
 
 void FrameSource::startNext() {
-    if (mJob || mMesh.patchCount() == 0) return;
+    if (mJob || mMesh.patchCount() == 0 || (mDrawer && drawAtOnce())) return;
     const double scale = std::min(1.0, kOverviewPx / std::max(mMesh.width(), mMesh.height()));
     const View whole = wholePicture(mMesh, {scale, scale});
     mRefining = false;
@@ -88,6 +110,25 @@ void FrameSource::startNext() {
     }
     mRefining = true;
     draw(*mWish, kPictureSamples, &FrameSource::keepLatest);
+}
+
+bool FrameSource::drawAtOnce() {
+    if (!mWish || mWish->width <= 0 || mWish->height <= 0 || settled()) return true;
+    const double scale = std::min(1.0, kOverviewPx / std::max(mMesh.width(), mMesh.height()));
+    const View whole = wholePicture(mMesh, {scale, scale});
+    for (const auto& [view, frame] : {std::pair{*mWish, &mLatest}, std::pair{whole, &mOverview}}) {
+        Result<QImage> image = mDrawer->draw(view);
+        if (!image) {
+            mDrawer.reset();
+            emit drawerLost(QString::fromStdString(image.error().message));
+            return false;
+        }
+        *frame = Frame{std::move(*image), view, kPictureSamples};
+    }
+    mDirty.reset();
+    mOverviewOld = false;
+    emit frameReady();
+    return true;
 }
 
 void FrameSource::draw(const View& view, int samples, void (FrameSource::*keep)(Frame)) {

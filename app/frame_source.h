@@ -3,9 +3,13 @@
 #pragma once
 
 #include <QObject>
+#include <QTimer>
+#include <memory>
 #include <optional>
 
+#include "app/frame_drawer.h"
 #include "app/jobs/render_job.h"
+#include "core/edit/touched.h"
 #include "core/mesh/patch_query.h"
 
 namespace tessera {
@@ -18,13 +22,16 @@ class FrameSource : public QObject {
     Q_OBJECT
 
   public:
-    explicit FrameSource(QObject* parent = nullptr) : QObject(parent) {}
+    explicit FrameSource(QObject* parent = nullptr);
 
     // Forgets the frames and starts on those of `mesh`; one without patches has none.
     void setMesh(PatchMesh mesh);
-    // `mesh` looks like the one before but within `dirty` (image px): that part of the frames is drawn anew,
-    // the rest stays.
-    void updateMesh(PatchMesh mesh, const Rect& dirty);
+    // `mesh` differs from the one before by `touched`: where that can be seen the frames are drawn anew, the
+    // rest stays.
+    void updateMesh(PatchMesh mesh, const Touched& touched);
+    // Draws the wished views from now on, in place of workers; null goes back to them.
+    void setDrawer(std::unique_ptr<FrameDrawer> drawer);
+    bool hasDrawer() const { return mDrawer != nullptr; }
     // What shall be shown; `view` lies within the picture. Cheap where it is the same as before.
     void request(const View& view);
 
@@ -35,15 +42,22 @@ class FrameSource : public QObject {
 
   signals:
     void frameReady();
+    // The drawer has failed and is gone; workers go on.
+    void drawerLost(const QString& reason);
 
   private:
     void startNext();
+    void startSoon();
+    // Whether the drawer has drawn all that was wished.
+    bool drawAtOnce();
     void draw(const View& view, int samples, void (FrameSource::*keep)(Frame));
     void keepOverview(Frame frame) { mOverview = std::move(frame); }
     void keepLatest(Frame frame) { mLatest = std::move(frame); }
     void keepPart(Frame part);
 
     PatchMesh mMesh;
+    std::unique_ptr<FrameDrawer> mDrawer;
+    QTimer mDrawSoon;          // so that what happens between two frames is drawn once
     uint64_t mGeneration = 0;  // of mMesh, so that a frame of an older one is dropped
     std::optional<View> mWish;
     std::optional<Frame> mOverview;

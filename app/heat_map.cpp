@@ -33,7 +33,8 @@ Result<QImage> heatMap(const PatchMesh& mesh, const Image& photo, Progress& prog
             for (size_t x = 0; x < width; ++x) {
                 double sum = 0;
                 for (int c = 0; c < std::min(photo.channels(), 3); ++c) {
-                    const double d = double(drawn->plane(c)[y * width + x]) - double(photo.plane(c)[y * width + x]);
+                    const double d =
+                        double(drawn->plane(c)[y * width + x]) - double(photo.plane(c)[y * width + x]);
                     sum += d * d;
                 }
                 line[x] = heatColour(255 * std::sqrt(sum));

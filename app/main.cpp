@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
 
     tessera::MainWindow window;
     window.show();
+    window.offerRecovery();
     if (!parser.positionalArguments().isEmpty()) {
         window.open(parser.positionalArguments().first());
         if (parser.isSet(vectorize)) window.vectorizeWhenOpen();

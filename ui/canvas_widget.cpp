@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/mesh_damage.h"
 #include "core/edit/select.h"
 
 namespace tessera {
@@ -60,6 +59,7 @@ CanvasWidget::CanvasWidget(QWidget* parent) : QWidget(parent), mColours(canvasCo
     setMouseTracking(true);
     setAttribute(Qt::WA_OpaquePaintEvent);
     setMinimumSize(240, 180);
+    connect(&mFrames, &FrameSource::drawerLost, this, &CanvasWidget::drawerLost);
     connect(&mFrames, &FrameSource::frameReady, this, [this] {
         update();
         reportCursor();
@@ -97,7 +97,7 @@ void CanvasWidget::follow(const Change& change) {
     if (!change.mesh()) return;
     if (change.replaced) return reloadMesh();
     const PatchMesh& mesh = mSession->document().mesh;
-    mFrames.updateMesh(mesh, damagedArea(mMesh, mesh, change.touched));
+    mFrames.updateMesh(mesh, change.touched);
     mMesh = mesh;
     if (change.touched.topology) {
         mOverlay = OverlayPainter(mMesh);

@@ -28,6 +28,8 @@ class CanvasWidget : public QWidget {
     // next call.
     void setSession(DocumentSession* session);
     void setTheme(Theme theme);
+    // Null: the CPU renderer.
+    void setDrawer(std::unique_ptr<FrameDrawer> drawer) { mFrames.setDrawer(std::move(drawer)); }
     // Whose tools get what pointer and keys do here; outlives the canvas.
     void setTools(ToolManager* tools);
 
@@ -72,6 +74,8 @@ class CanvasWidget : public QWidget {
     void cursorMoved(std::optional<QPointF> image, QColor colour);
     // What overviewImage() returns is another one.
     void overviewChanged();
+    // OpenGL has failed; the CPU renderer goes on.
+    void drawerLost(const QString& reason);
     void contextMenuWanted(QPoint globalPosition);
 
   protected:

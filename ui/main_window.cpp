@@ -13,6 +13,7 @@
 #include "ui/dialogs/cheat_sheet.h"
 #include "ui/dialogs/preferences_dialog.h"
 #include "ui/dialogs/recovery_dialog.h"
+#include "ui/gl_drawer.h"
 #include "ui/message_bar.h"
 #include "ui/panels/history_panel.h"
 #include "ui/panels/navigator.h"
@@ -48,6 +49,7 @@ MainWindow::MainWindow()
     connectWorkspace();
     connectCanvas();
     connectPanels();
+    chooseRenderer();
     restoreWindow();
     applySettings();
     showSession();
@@ -170,6 +172,15 @@ void MainWindow::connectCanvas() {
     connect(&mTools, &ToolManager::said, this, &MainWindow::say);
     // Keys of a tool are for the canvas, wherever the pointer took the tool up.
     connect(&mTools, &ToolManager::toolChanged, mCanvas, [this] { mCanvas->setFocus(); });
+}
+
+void MainWindow::chooseRenderer() {
+    CanvasRenderer renderer = makeCanvasRenderer(qEnvironmentVariable("TESSERA_RENDERER") == "gl");
+    mStatus->showRenderer(renderer.drawer != nullptr, renderer.text);
+    mCanvas->setDrawer(std::move(renderer.drawer));
+    connect(mCanvas, &CanvasWidget::drawerLost, this, [this](const QString& reason) {
+        mStatus->showRenderer(false, tr("Drawn by the processor: %1").arg(reason));
+    });
 }
 
 void MainWindow::connectPanels() {

@@ -79,6 +79,7 @@ class MainWindow : public QMainWindow {
     void connectWorkspace();
     void connectCanvas();
     void connectPanels();
+    void chooseRenderer();
     void adoptSession();
     void showSession();
     void showTabs();

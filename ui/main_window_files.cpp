@@ -179,11 +179,10 @@ void MainWindow::fillRecentMenu() {
         return;
     }
     mRecent->addSeparator();
-    connect(mRecent->addAction(tr("Clear the List")), &QAction::triggered, this,
-            [this] {
-                mSettings.clearRecentFiles();
-                mStart->setRecentFiles({});
-            });
+    connect(mRecent->addAction(tr("Clear the List")), &QAction::triggered, this, [this] {
+        mSettings.clearRecentFiles();
+        mStart->setRecentFiles({});
+    });
 }
 
 }  // namespace tessera

@@ -78,8 +78,7 @@ void MainWindow::makeDocks() {
     QDockWidget* recolour = addDock("recolourDock", tr("Recolour"), mRecolour = new RecolourPanel, true);
     QDockWidget* palette =
         addDock("paletteDock", tr("Palette"), mPalette = new PalettePanel(mSwatches), true);
-    QDockWidget* selection =
-        addDock("selectionDock", tr("Selection"), mSelection = new SelectionPanel, true);
+    QDockWidget* selection = addDock("selectionDock", tr("Selection"), mSelection = new SelectionPanel, true);
     QDockWidget* history = addDock("historyDock", tr("History"), mHistory = new HistoryPanel, false);
     QDockWidget* navigator = addDock("navigatorDock", tr("Navigator"), mNavigator = new Navigator, false);
     tabifyDockWidget(vectorize, recolour);

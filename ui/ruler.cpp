@@ -76,8 +76,7 @@ void Ruler::paintEvent(QPaintEvent*) {
         painter.save();
         painter.translate(x + 3, 2);
         if (!horizontal) painter.scale(1, -1), painter.translate(0, -kThicknessPx + 6);
-        painter.drawText(QPointF(0, painter.fontMetrics().ascent()),
-                         QLocale().toString(value, 'g', 6));
+        painter.drawText(QPointF(0, painter.fontMetrics().ascent()), QLocale().toString(value, 'g', 6));
         painter.restore();
     }
     if (mPointer) {

@@ -83,7 +83,8 @@ const std::array kSessionActions{
 bool holds(unsigned needs, const DocumentSession& session) {
     const Selection& selection = session.selection();
     return (!(needs & kPatches) || !selection.patches().empty()) &&
-           (!(needs & kCurves) || !selection.curves().empty()) && (!(needs & kPhoto) || session.photo().image);
+           (!(needs & kCurves) || !selection.curves().empty()) &&
+           (!(needs & kPhoto) || session.photo().image);
 }
 
 }  // namespace

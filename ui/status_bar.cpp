@@ -65,6 +65,8 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     connect(mCancel, &QPushButton::clicked, this, &StatusBar::cancelRequested);
 
     mSelected = new QLabel;
+    mRenderer = new QLabel;
+    mRenderer->setProperty("role", "dim");
     mCounts = new QLabel;
     mCursor = fixedLabel("00000, 00000", Qt::AlignRight);
     mSwatch = new QLabel;
@@ -77,7 +79,8 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     mZoom->setMinimumWidth(mZoom->fontMetrics().horizontalAdvance("100,000 %") + 24);
     mZoom->setToolTip(tr("Zoom to 100 %"));
     connect(mZoom, &QPushButton::clicked, this, &StatusBar::zoomClicked);
-    for (QWidget* widget : std::initializer_list<QWidget*>{mSelected, mCounts, mCursor, mSwatch, mColour, mZoom})
+    for (QWidget* widget :
+         std::initializer_list<QWidget*>{mSelected, mCounts, mCursor, mSwatch, mColour, mRenderer, mZoom})
         addPermanentWidget(widget);
     layout()->setSpacing(12);
     layout()->setContentsMargins(0, 0, 8, 0);
@@ -99,6 +102,11 @@ void StatusBar::showJob(const Job* job) {
 
 QString StatusBar::jobText() const {
     return mJob->isHidden() ? QString() : mJobText->text();
+}
+
+void StatusBar::showRenderer(bool graphicsCard, const QString& text) {
+    mRenderer->setText(graphicsCard ? tr("GPU") : tr("CPU"));
+    mRenderer->setToolTip(text);
 }
 
 void StatusBar::showSelection(size_t patches) {

@@ -29,6 +29,8 @@ class StatusBar : public QStatusBar {
     void showCursor(std::optional<QPointF> image, QColor colour);
     void showCounts(const DocumentSession* session, size_t features);
     void showSelection(size_t patches);
+    // What the canvas is drawn with; `text` says more.
+    void showRenderer(bool graphicsCard, const QString& text);
 
     QString jobText() const;
 
@@ -43,6 +45,7 @@ class StatusBar : public QStatusBar {
     QPushButton* mCancel;
     QLabel* mCounts;
     QLabel* mSelected;
+    QLabel* mRenderer;
     QLabel* mCursor;
     QLabel* mSwatch;
     QLabel* mColour;

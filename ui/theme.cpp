@@ -73,21 +73,28 @@ const char* const kSheet = R"(
 
 }  // namespace
 
+Theme shownTheme(Theme theme) {
+    static const bool kDesktopIsDark = QGuiApplication::palette().color(QPalette::Window).lightness() < 128;
+    if (theme != Theme::System) return theme;
+    return kDesktopIsDark ? Theme::Dark : Theme::Light;
+}
+
 CanvasColours canvasColours(Theme theme) {
-    if (theme == Theme::Light)
+    if (shownTheme(theme) == Theme::Light)
         return {QColor("#b8b8b8"), QColor(0, 0, 0, 90), QColor("#ffffff"), QColor("#d9d9d9"),
                 QColor("#4a4a4a")};
     return {QColor("#1f1f1f"), QColor(0, 0, 0, 200), QColor("#9a9a9a"), QColor("#7c7c7c"), QColor("#9a9a9a")};
 }
 
 void applyTheme(QApplication& application, Theme theme) {
-    const Greys& g = theme == Theme::Light ? kLight : kDark;
+    const bool light = shownTheme(theme) == Theme::Light;
+    const Greys& g = light ? kLight : kDark;
     application.setStyle(QStyleFactory::create("Fusion"));
     const QPalette palette = paletteOf(g);
     application.setPalette(palette);
     // Fusion outlines a check box with a darker grey, which cannot be seen on a dark window: fill it lighter.
     QPalette checkBoxes = palette;
-    checkBoxes.setColor(QPalette::Base, theme == Theme::Light ? g.base : g.button.lighter(130));
+    checkBoxes.setColor(QPalette::Base, light ? g.base : g.button.lighter(130));
     QApplication::setPalette(checkBoxes, "QCheckBox");
     QString sheet = kSheet;
     for (const QColor& colour : {g.line, g.text, g.dim, g.accent, g.accentText, g.raised, g.button, g.window})

@@ -21,7 +21,11 @@ struct CanvasColours {
 
 CanvasColours canvasColours(Theme theme);
 
-// Sets style, palette and style sheet of the whole program. (Qt 6.4 cannot tell what the desktop prefers.)
+// Dark or Light: what System comes to, by the palette that the desktop gave the program at its start. (Qt 6.4
+// has no better way to ask.)
+Theme shownTheme(Theme theme);
+
+// Sets style, palette and style sheet of the whole program.
 void applyTheme(QApplication& application, Theme theme);
 
 }  // namespace tessera

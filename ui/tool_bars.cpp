@@ -163,8 +163,9 @@ void ToolOptionsBar::addNumber(const Page& page, const QString& name, const QStr
     box->setSuffix(suffix);
     box->setKeyboardTracking(false);
     insertLabelled(page.row, name, box);
-    connect(box, &QDoubleSpinBox::valueChanged, this,
-            [=, this](double value) { change([&](ToolOptions& options) { field(options) = value / factor; }); });
+    connect(box, &QDoubleSpinBox::valueChanged, this, [=, this](double value) {
+        change([&](ToolOptions& options) { field(options) = value / factor; });
+    });
     mFields.emplace_back([=](ToolOptions options) {
         const QSignalBlocker quiet(box);
         box->setValue(field(options) * factor);
