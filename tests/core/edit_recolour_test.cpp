@@ -10,6 +10,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/base/parallel.h"
 #include "core/edit/brush.h"
 #include "core/edit/colour_samples.h"
 #include "core/edit/drag_colour.h"
@@ -231,6 +232,13 @@ TEST(Recolour, GesturesGiveWhatSingleEditsGive) {
         EXPECT_EQ(a, b);
         EXPECT_TRUE(testing::sameMesh(one, other));
     }
+}
+
+TEST(Recolour, ThreadsMakeNoDifference) {
+    PatchMesh one = scene(), many = scene();
+    withThreads(1, [&] { recolour(one, all(one), ColourShift{75, 1.2, 0}); });
+    withThreads(4, [&] { recolour(many, all(many), ColourShift{75, 1.2, 0}); });
+    EXPECT_TRUE(testing::sameMesh(one, many));
 }
 
 TEST(Recolour, PreviewsAreNearlyTheSame) {
