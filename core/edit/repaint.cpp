@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 
 #include "core/base/parallel.h"
-#include "core/edit/patch_colours.h"
+#include "core/edit/colour_fan.h"
 #include "core/image/oklab.h"
 
 namespace tessera {
@@ -15,13 +15,16 @@ namespace {
 
 // What an affine change in the place of a curved one may be off, on a few points: less than a refit may.
 constexpr double kLinearMean = .3 / 255, kLinearMost = 1.2 / 255;
+// Of so many patches what a refit needs is kept: 35 kB each.
+constexpr size_t kMostKept = 2000;
 // Smaller changes are none.
 constexpr double kNoChange = 1e-4 / 255;
 
-const DomainPoints& probePoints() {
-    static const DomainPoints points(latticeOf(4));
-    return points;
+const std::vector<Barycentric>& probeLattice() {
+    static const std::vector<Barycentric> lattice = latticeOf(4);
+    return lattice;
 }
+constexpr size_t kProbeCorners[] = {0, 4, 14};  // a, b, c among them
 
 bool isIdentity(const AffineColour& change) {
     const glm::dmat3 rest = change.matrix - glm::dmat3(1);
@@ -33,14 +36,13 @@ bool isIdentity(const AffineColour& change) {
     return most < kNoChange;
 }
 
-double largest(glm::dvec3 d) {
-    return std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+std::optional<PatchSpline> mixedBy(const PatchMesh& mesh, PatchId p, const AffineColour& change) {
+    if (isIdentity(change)) return std::nullopt;
+    return mixed(mesh.spline(p), mesh.channels(), mesh.colourBasis(), change);
 }
 
-std::vector<PaintedColour> paintedColours(const PatchMesh& mesh, PatchId p, const DomainPoints& points) {
-    std::vector<PaintedColour> colours;
-    for (const ColourSample& s : sampleColours(mesh, p, points)) colours.emplace_back(s.srgb);
-    return colours;
+double largest(glm::dvec3 d) {
+    return std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
 }
 
 glm::dvec3 painted(const Repaint& repaint, const PaintedColour& colour) {
@@ -60,22 +62,34 @@ struct Repainter::Patch {
     PaintedColour mean;           // of the probes
     PaintedColour beside[3];      // the mean with a little more of R, G or B
     std::vector<PaintedColour> probes;
+    std::vector<double> probeAlphas;
     std::vector<PaintedColour> colours;  // at the points of a refit
     std::vector<double> alphas;
     std::optional<SplineRefit> refit;
 
     static constexpr double kStep = 1.0 / 64;
 
+    bool untouched() const {
+        return !even && std::all_of(weights.begin(), weights.end(), [](double w) { return w <= 0; });
+    }
+
     void probe(const PatchMesh& mesh) {
         if (!probes.empty()) return;
-        probes = paintedColours(mesh, id, probePoints());
+        static const DomainPoints points(probeLattice());
+        const BezierTriangle shape = toPixels(mesh.controlPoints(id));
+        const auto samples = sampleColours(mesh, id, points);
+        for (size_t i = 0; i < samples.size(); ++i) {
+            probes.emplace_back(samples[i].srgb, evaluate(shape, probeLattice()[i]));
+            probeAlphas.push_back(samples[i].alpha);
+        }
+        const glm::dvec2 middle = evaluate(shape, Barycentric(1.0 / 3));
         glm::dvec3 sum(0);
         for (const PaintedColour& c : probes) sum += c.srgb;
-        mean = PaintedColour(sum / double(probes.size()));
+        mean = PaintedColour(sum / double(probes.size()), middle);
         for (int c = 0; c < 3; ++c) {
             glm::dvec3 colour = mean.srgb;
             colour[c] += colour[c] < .5 ? kStep : -kStep;
-            beside[c] = PaintedColour(colour);
+            beside[c] = PaintedColour(colour, middle);
         }
     }
 
@@ -88,6 +102,12 @@ struct Repainter::Patch {
             alphas.push_back(samples[i].alpha);
         }
         refit.emplace(mesh.spline(id));
+    }
+
+    void forget() {
+        colours = {};
+        alphas = {};
+        refit.reset();
     }
 
     // The tangent of a repainting at the mean colour.
@@ -132,8 +152,7 @@ Repainter::Repainter(PatchMesh start, PatchSet patches, PaintWeight weight)
     });
 }
 
-std::optional<PatchSpline> Repainter::refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
-                                               Precision precision) {
+Repainter::Spline Repainter::refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint) {
     patch.sample(mesh);
     const size_t n = patch.colours.size();
     std::vector<float> planes(n * kMaxChannels);
@@ -150,33 +169,52 @@ std::optional<PatchSpline> Repainter::refitted(const PatchMesh& mesh, Patch& pat
     for (size_t c = 0; c < kMaxChannels; ++c) pointers[c] = planes.data() + c * n;
     fromWorking(mesh.colourBasis(), pointers, n);
     const std::vector<double> values(planes.begin(), planes.end());
-    return patch.refit->fit(values, mesh.channels(), precision == Precision::Full);
+    return patch.refit->fit(values, mesh.channels());
 }
 
-std::optional<PatchSpline> Repainter::repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
-                                                Precision precision) {
-    const auto mixedBy = [&](const AffineColour& change) -> std::optional<PatchSpline> {
-        if (isIdentity(change)) return std::nullopt;
-        return mixed(mesh.spline(patch.id), mesh.channels(), mesh.colourBasis(), change);
-    };
-    if (!patch.even &&
-        std::all_of(patch.weights.begin(), patch.weights.end(), [](double w) { return w <= 0; }))
-        return std::nullopt;
-    if (patch.even && repaint.affine) return mixedBy(*repaint.affine);
+Repainter::Spline Repainter::repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint) {
+    if (patch.even && repaint.affine) return mixedBy(mesh, patch.id, *repaint.affine);
     // With alpha a tangent of colours that are not premultiplied says nothing of those that are.
     if (patch.even && !repaint.dependsOnPoint && mesh.channels() == 3) {
         patch.probe(mesh);
-        if (precision == Precision::Quick) return mixedBy(patch.tangent(repaint));
-        if (const auto change = patch.linearized(repaint)) return mixedBy(*change);
+        if (const auto change = patch.linearized(repaint)) return mixedBy(mesh, patch.id, *change);
     }
-    return refitted(mesh, patch, repaint, precision);
+    return refitted(mesh, patch, repaint);
+}
+
+Repainter::Spline Repainter::sketched(const PatchMesh& mesh, Patch& patch, const Repaint& repaint) {
+    if (patch.even && repaint.affine) return mixedBy(mesh, patch.id, *repaint.affine);
+    patch.probe(mesh);
+    const AffineColour full = repaint.affine ? *repaint.affine : patch.tangent(repaint);
+    if (patch.even && !repaint.dependsOnPoint) return mixedBy(mesh, patch.id, full);
+    // In the middle by as much as at the corners in the mean; then what the corners lack.
+    double weight = 1;
+    if (!patch.even) weight = (patch.weights[0] + patch.weights[1] + patch.weights[2]) / 3;
+    const AffineColour change{(1 - weight) * glm::dmat3(1) + weight * full.matrix, weight * full.offset};
+    CornerValues values{};
+    for (size_t k = 0; k < 3; ++k) {
+        const PaintedColour& colour = patch.probes[kProbeCorners[k]];
+        const double share = patch.even ? 1 : patch.weights[k];
+        const glm::dvec3 lack =
+            glm::mix(colour.whole, painted(repaint, colour), share) - change(colour.whole);
+        for (int c = 0; c < 3; ++c)
+            values[size_t(c)][k] = float(patch.probeAlphas[kProbeCorners[k]] * lack[c]);
+    }
+    return withCornersRaised(mixed(mesh.spline(patch.id), mesh.channels(), mesh.colourBasis(), change),
+                             mesh.colourBasis(), values);
 }
 
 PatchSet Repainter::apply(PatchMesh& mesh, const Repaint& repaint, Precision precision) const {
     if (repaint.affine && isIdentity(*repaint.affine)) return {};
     std::vector<std::optional<PatchSpline>> splines(mPatches.size());
     parallelFor(mPatches.size(), 16, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) splines[i] = repainted(mStart, (*mCache)[i], repaint, precision);
+        for (size_t i = begin; i < end; ++i) {
+            Patch& patch = (*mCache)[i];
+            if (patch.untouched()) continue;
+            splines[i] = precision == Precision::Full ? repainted(mStart, patch, repaint)
+                                                      : sketched(mStart, patch, repaint);
+            if (mPatches.size() > kMostKept) patch.forget();
+        }
     });
     PatchSet changed;
     for (size_t i = 0; i < mPatches.size(); ++i) {

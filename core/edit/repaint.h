@@ -36,7 +36,7 @@ struct Repaint {
 // How much of a repainting a place gets, 0..1; continuous. Thread-safe.
 using PaintWeight = std::function<double(glm::dvec2 point)>;
 
-// Quick: for a frame of a gesture. Whatever depends on colour alone is made affine, and no spline gets sites.
+// Quick: for a frame of a gesture. The change is made affine in colour, and in place linear between corners.
 enum class Precision { Full, Quick };
 
 // Repaints the patches of one state of a mesh, any number of times.
@@ -53,10 +53,10 @@ class Repainter {
 
   private:
     struct Patch;
-    static std::optional<PatchSpline> repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
-                                                Precision precision);
-    static std::optional<PatchSpline> refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
-                                               Precision precision);
+    using Spline = std::optional<PatchSpline>;  // none where nothing changes
+    static Spline repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
+    static Spline refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
+    static Spline sketched(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
 
     PatchMesh mStart;
     PatchSet mPatches;

@@ -44,9 +44,8 @@ class SplineRefit {
     static const DomainPoints& points();
 
     // values[c * points().size() + i] of channel c at point i, in the basis of the spline. Where the mean
-    // deviation at the points is more than kRefitTolerance the spline gets further sites, if it may.
-    // Thread-safe.
-    PatchSpline fit(std::span<const double> values, int channels, bool mayGetSites = true) const;
+    // deviation at the points is more than kRefitTolerance the spline gets further sites. Thread-safe.
+    PatchSpline fit(std::span<const double> values, int channels) const;
 
   private:
     struct System;

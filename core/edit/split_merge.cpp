@@ -11,6 +11,7 @@
 #include "core/edit/spline_edit.h"
 #include "core/mesh/jacobian.h"
 #include "core/mesh/mesh_validate.h"
+#include "core/mesh/patch_query.h"
 
 namespace tessera {
 
@@ -416,6 +417,22 @@ Result<Touched> mergeEdge(PatchMesh& mesh, EdgeId e) {
     }
     return refused(possible ? "merging here would fold a patch; move its corners first"
                             : "merging here would change the picture's outline or tear the mesh");
+}
+
+PatchSet carriedOver(const PatchMesh& before, const PatchMesh& after, const PatchSet& set) {
+    PatchSet result = alive(after, set);
+    std::vector<PatchId> fresh;
+    after.forEachPatch([&](PatchId p) {
+        if (p.index >= before.connectivity().faceCapacity()) fresh.push_back(p);
+    });
+    if (fresh.empty()) return result;
+    // A part lies where the whole was.
+    const PatchQuery query(before);
+    for (const PatchId p : fresh) {
+        const auto whole = query.patchAt(evaluate(toPixels(after.controlPoints(p)), Barycentric(1.0 / 3)));
+        if (whole && contains(set, whole->patch)) result.push_back(p);
+    }
+    return patchSet(std::move(result));
 }
 
 }  // namespace tessera

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/result.h"
+#include "core/edit/patch_set.h"
 #include "core/edit/touched.h"
 #include "core/mesh/bezier.h"
 
@@ -23,5 +24,9 @@ Result<Touched> splitPatch(PatchMesh& mesh, PatchId p, const Barycentric& at);
 // border, more features stay where they are). Fails where a patch would fold or is locked, or the picture's
 // outline would change.
 Result<Touched> mergeEdge(PatchMesh& mesh, EdgeId e);
+
+// A set of patches of the mesh before one of these edits, after it: patches that are gone leave it, and the
+// parts of one that was split are in it where the whole was.
+PatchSet carriedOver(const PatchMesh& before, const PatchMesh& after, const PatchSet& set);
 
 }  // namespace tessera

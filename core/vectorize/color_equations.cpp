@@ -83,8 +83,7 @@ class EquationBuilder {
     // How many factors a row has for a patch: its unknowns; of a held one its colours, channel by channel.
     size_t factorCount(uint32_t p) const { return size_t(held(p) ? mMesh.channels() : m.patches[p].count); }
     void evaluateFactors(uint32_t p, const float* x, const float* y, size_t count, float* out) const;
-    void evaluateSlopes(uint32_t p, glm::dvec2 at, double* values, double* alongX,
-                                 double* alongY) const;
+    void evaluateSlopes(uint32_t p, glm::dvec2 at, double* values, double* alongX, double* alongY) const;
     void reach(const Rect& box) {
         mReach.min = glm::min(mReach.min, box.min);
         mReach.max = glm::max(mReach.max, box.max);
@@ -108,7 +107,8 @@ class EquationBuilder {
 };
 
 // out[k * count + i] is function k at point i.
-void EquationBuilder::evaluateFactors(uint32_t p, const float* x, const float* y, size_t count, float* out) const {
+void EquationBuilder::evaluateFactors(uint32_t p, const float* x, const float* y, size_t count,
+                                      float* out) const {
     if (!held(p)) {
         m.bases[p].evaluate(x, y, count, out, count);
         return;
@@ -119,7 +119,7 @@ void EquationBuilder::evaluateFactors(uint32_t p, const float* x, const float* y
 }
 
 void EquationBuilder::evaluateSlopes(uint32_t p, glm::dvec2 at, double* values, double* alongX,
-                                              double* alongY) const {
+                                     double* alongY) const {
     if (!held(p)) {
         m.bases[p].evaluateWithDerivatives(at, values, alongX, alongY);
         return;

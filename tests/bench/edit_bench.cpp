@@ -14,9 +14,12 @@
 #include "core/edit/drag_colour.h"
 #include "core/edit/palette.h"
 #include "core/edit/recolour.h"
+#include "core/edit/refit.h"
 #include "core/edit/reshape.h"
 #include "core/edit/select.h"
+#include "core/edit/snap.h"
 #include "core/edit/split_merge.h"
+#include "core/export/rasterize.h"
 
 namespace {
 
@@ -80,6 +83,10 @@ void measureRecolour(const PatchMesh& mesh) {
             work = mesh;
             gesture.preview(work, ColourShift{8.0 * (i + 1), 1, 0});
         });
+        measure("recolour frame, gradient" + of, 3, [&](int i) {
+            work = mesh;
+            gesture.preview(work, GradientRecolour{{0, 0}, {900.0 + i, 700}, {1, 0, 0}, {0, 0, 1}, .5});
+        });
         measure("recolour, last frame, hue" + of, 3, [&](int i) {
             work = mesh;
             gesture.apply(work, ColourShift{8.0 * (i + 1), 1, 0});
@@ -89,6 +96,13 @@ void measureRecolour(const PatchMesh& mesh) {
             recolour(work, set, ColourShift{8.0 * (i + 1), 1, 0});
         });
     }
+    const PatchSet some = region(mesh, PatchId(uint32_t(mesh.patchCount() / 2)), 2000);
+    measure("start of a feathered gesture, 2000 patches", 3, [&](int) { Recolourer(mesh, some, {30}); });
+    const Recolourer feathered(mesh, some, {30});
+    measure("feathered frame, hue, 2000 patches", 5, [&](int i) {
+        PatchMesh work = mesh;
+        feathered.preview(work, ColourShift{8.0 * (i + 1), 1, 0});
+    });
     const PatchQuery query(mesh);
     measure("brush of 40 px, one stroke of 300 px", 11, [&](int i) {
         PatchMesh work = mesh;
@@ -127,6 +141,19 @@ void measureShape(const PatchMesh& mesh) {
         measure("drag frame, free" + of, 11, [&](int i) { drag.drag(work, {.05 * i, .02}); });
         measure("drag frame, at the limit" + of, 3, [&](int) { drag.drag(work, {200, 90}); });
     }
+    const auto photo = rasterize(mesh, wholePicture(mesh, {1, 1}));
+    measure("refit the patches of a drag and their ring", 5, [&](int i) {
+        PatchMesh copy = mesh;
+        refitColours(copy, *photo, drags[size_t(i)].patches());
+    });
+    std::vector<EdgeId> features;
+    mesh.forEachEdge([&](EdgeId e) {
+        if (mesh.curve(e).feature) features.push_back(e);
+    });
+    measure("snap a curve", 11, [&](int i) {
+        PatchMesh copy = mesh;
+        (void)snapToFeature(copy, *photo, std::array{features[size_t(i) * 31 % features.size()]});
+    });
     measure("split an edge", 11, [&](int i) {
         PatchMesh copy = mesh;
         splitEdge(copy, EdgeId(uint32_t(i * 501)), .5);

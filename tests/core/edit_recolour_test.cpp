@@ -10,6 +10,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/base/parallel.h"
 #include "core/edit/brush.h"
 #include "core/edit/colour_samples.h"
 #include "core/edit/drag_colour.h"
@@ -233,26 +234,38 @@ TEST(Recolour, GesturesGiveWhatSingleEditsGive) {
     }
 }
 
+TEST(Recolour, ThreadsMakeNoDifference) {
+    PatchMesh one = scene(), many = scene();
+    withThreads(1, [&] { recolour(one, all(one), ColourShift{75, 1.2, 0}); });
+    withThreads(4, [&] { recolour(many, all(many), ColourShift{75, 1.2, 0}); });
+    EXPECT_TRUE(testing::sameMesh(one, many));
+}
+
 TEST(Recolour, PreviewsAreNearlyTheSame) {
     const PatchSet set = all(scene());
-    const Recolourer gesture(scene(), set);
-    PatchMesh quick = scene(), full = scene();
-    EXPECT_EQ(gesture.preview(quick, ColourShift{60, 1.1, 0}), gesture.apply(full, ColourShift{60, 1.1, 0}));
-    const auto one = rasterize(quick, wholePicture(quick, {1, 1})),
-               other = rasterize(full, wholePicture(full, {1, 1}));
-    double off = 0;
-    for (int y = 0; y < 150; ++y)
-        for (int x = 0; x < 200; ++x)
-            for (int c = 0; c < 3; ++c)
-                off += std::abs(std::clamp(double(one->at(x, y, c)), 0.0, 1.0) -
-                                std::clamp(double(other->at(x, y, c)), 0.0, 1.0));
-    EXPECT_LT(255 * off / (3 * 150 * 200), 4);
-    testing::expectValid(quick);
-    quick = scene();
-    full = scene();
-    gesture.preview(quick, Levels{.1, .2});
-    gesture.apply(full, Levels{.1, .2});
-    EXPECT_TRUE(testing::sameMesh(quick, full));
+    PatchSet part{PatchId(60)};
+    for (int i = 0; i < 4; ++i) part = grown(scene(), part);
+    const Recolourer gesture(scene(), set), feathered(scene(), part, {15});
+    const GradientRecolour gradient{{20, 0}, {180, 150}, {1, .2, 0}, {0, .3, 1}, .7};
+    const auto off = [](const Recolourer& recolourer, const Recolouring& how) {
+        PatchMesh quick = scene(), full = scene();
+        EXPECT_EQ(recolourer.preview(quick, how), recolourer.apply(full, how));
+        testing::expectValid(quick);
+        const View view = wholePicture(quick, {1, 1});
+        const auto one = rasterize(quick, view), other = rasterize(full, view);
+        double sum = 0;
+        for (int y = 0; y < 150; ++y)
+            for (int x = 0; x < 200; ++x)
+                for (int c = 0; c < 3; ++c)
+                    sum += std::abs(std::clamp(double(one->at(x, y, c)), 0.0, 1.0) -
+                                    std::clamp(double(other->at(x, y, c)), 0.0, 1.0));
+        return 255 * sum / (3 * 150 * 200);
+    };
+    EXPECT_LT(off(gesture, ColourShift{60, 1.1, 0}), 4);
+    EXPECT_LT(off(gesture, gradient), 1.5);
+    EXPECT_LT(off(feathered, Levels{.2, 0}), 2.5);
+    EXPECT_LT(off(feathered, gradient), 2.5);
+    EXPECT_EQ(off(gesture, Levels{.1, .2}), 0);
 }
 
 TEST(Recolour, AGradientGoesFromColourToColour) {

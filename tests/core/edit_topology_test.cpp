@@ -198,5 +198,26 @@ TEST(MergeEdge, UndoesASplit) {
     expectValid(mesh);
 }
 
+TEST(CarriedOver, FollowsSplitsAndMerges) {
+    PatchMesh mesh = scene();
+    const PatchSet set{PatchId(40), PatchId(41), PatchId(50)};
+    PatchMesh before = mesh;
+    ASSERT_TRUE(splitPatch(mesh, PatchId(50), Barycentric(1.0 / 3)));
+    const PatchSet split = carriedOver(before, mesh, set);
+    const auto capacity = uint32_t(before.connectivity().faceCapacity());
+    EXPECT_EQ(split,
+              (PatchSet{PatchId(40), PatchId(41), PatchId(50), PatchId(capacity), PatchId(capacity + 1)}));
+    before = mesh;
+    ASSERT_TRUE(splitPatch(mesh, PatchId(60), Barycentric(1.0 / 3)));
+    EXPECT_EQ(carriedOver(before, mesh, split), split);
+    before = mesh;
+    EdgeId inside;
+    for (const HalfedgeId side : mesh.connectivity().sides(PatchId(capacity)))
+        if (contains(split, mesh.connectivity().face(HalfedgeMesh::twin(side))))
+            inside = HalfedgeMesh::edge(side);
+    ASSERT_TRUE(mergeEdge(mesh, inside));
+    EXPECT_EQ(carriedOver(before, mesh, split).size(), split.size() - 2);
+}
+
 }  // namespace
 }  // namespace tessera

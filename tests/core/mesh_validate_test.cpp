@@ -279,6 +279,24 @@ PatchMesh blurredCut() {
     return mesh;
 }
 
+TEST(Validate, ColourBreaksAreNoFeatures) {
+    PatchMesh mesh = testing::gridMesh(40, 40, 2, 2);
+    EdgeId inner, border;
+    mesh.forEachEdge([&](EdgeId e) { (mesh.connectivity().onBorder(e) ? border : inner) = e; });
+    EdgeCurve curve = mesh.curve(inner);
+    curve.colourBreak = true;
+    mesh.setCurve(inner, curve);
+    EXPECT_TRUE(validate(mesh).valid());
+    curve.feature = true;
+    mesh.setCurve(inner, curve);
+    EXPECT_THAT(validate(mesh).violations, Contains(HasSubstr("is a colour break on a feature")));
+    mesh = testing::gridMesh(40, 40, 2, 2);
+    curve = mesh.curve(border);
+    curve.colourBreak = true;
+    mesh.setCurve(border, curve);
+    EXPECT_THAT(validate(mesh).violations, Contains(HasSubstr("is a colour break")));
+}
+
 TEST(Validate, BlurOnFeaturesAlone) {
     const PatchMesh sound = blurredCut();
     EXPECT_THAT(validate(sound).violations, IsEmpty());
