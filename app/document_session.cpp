@@ -3,6 +3,7 @@
 
 #include <QDir>
 #include <QFileInfo>
+#include <QPointer>
 #include <utility>
 
 namespace tessera {
@@ -13,7 +14,8 @@ DocumentSession::DocumentSession(Document document, Photo photo, QString path, Q
       mDocument(std::move(document)),
       mPhoto(std::move(photo)),
       mPath(std::move(path)),
-      mPhotoPath(std::move(photoPath)) {}
+      mPhotoPath(std::move(photoPath)),
+      mHistory(*this) {}
 
 int DocumentSession::width() const {
     return hasMesh() ? mDocument.mesh.width() : mPhoto.image ? mPhoto.image->width() : 0;
@@ -43,12 +45,61 @@ void DocumentSession::markSaved(uint64_t revision, const QString& path, std::opt
     // saving.
     if (revision == mRevision) mDocument.colourStep = colourStep;
     emit changed({.saved = true});
+    emit mHistory.changed();
 }
 
-void DocumentSession::swapState(Document& document, uint64_t& revision) {
+void DocumentSession::markUnsaved() {
+    mSavedRevision = 0;
+    emit changed({.saved = true});
+    emit mHistory.changed();
+}
+
+void DocumentSession::setPhoto(Photo photo, const QString& path) {
+    mPhoto = std::move(photo);
+    mPhotoPath = path;
+    emit changed({.photo = true});
+}
+
+void DocumentSession::swapState(Document& document, uint64_t& revision, const Change& change) {
     std::swap(mDocument, document);
     std::swap(mRevision, revision);
-    emit changed({.mesh = true, .saved = true});
+    announce(document.mesh, change);
+}
+
+void DocumentSession::showPreview(PatchMesh mesh, const Change& change) {
+    std::swap(mDocument.mesh, mesh);
+    announce(mesh, change);
+}
+
+void DocumentSession::announce(const PatchMesh& before, const Change& change) {
+    if (change.mesh()) {
+        mIndex.follow(mDocument.mesh, change);
+        mSelection.follow(before, mDocument.mesh, change);
+    }
+    emit changed(change);
+}
+
+void DocumentSession::setEditing(bool editing) {
+    mEditing = editing;
+    emit editingChanged();
+    // Not from here: whoever closes an EditSession is in the middle of something.
+    if (!mEditing && !mWaiting.empty())
+        QMetaObject::invokeMethod(this, &DocumentSession::runWaiting, Qt::QueuedConnection);
+}
+
+void DocumentSession::whenIdle(std::function<void()> work) {
+    // After what waits already, even if nothing is in its way any more.
+    if (!mEditing && mWaiting.empty()) return work();
+    mWaiting.push_back(std::move(work));
+}
+
+void DocumentSession::runWaiting() {
+    const QPointer<DocumentSession> self = this;  // work may close the document
+    while (self && !mEditing && !mWaiting.empty()) {
+        const std::function<void()> work = std::move(mWaiting.front());
+        mWaiting.pop_front();
+        work();
+    }
 }
 
 }  // namespace tessera

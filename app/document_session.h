@@ -3,28 +3,28 @@
 
 #include <QObject>
 #include <QString>
-#include <QUndoStack>
+#include <deque>
+#include <functional>
 #include <memory>
 
+#include "app/change.h"
+#include "app/history.h"
+#include "app/mesh_index.h"
 #include "app/picture_pyramid.h"
+#include "app/selection.h"
 #include "core/document/document.h"
 
 namespace tessera {
 
-// What a listener must look at again. One signal carries it, so that no listener sees half of a change.
-struct Change {
-    bool mesh = false;   // the patches (and with them report, settings, difference)
-    bool saved = false;  // the path or the modified state
-};
-
-// The photo in the two forms in which it is used; both null where it is not known.
+// The photo in the forms in which it is used; all null where it is not known.
 struct Photo {
     std::shared_ptr<const Image> image;
     std::shared_ptr<const PicturePyramid> pyramid;
+    std::shared_ptr<const std::vector<uint8_t>> bytes;  // of its file, for documents to embed
 };
 
-// Lives on the UI thread. A revision names one state of the document: a command takes it to a new one,
-// undoing it brings back the old one. Jobs remember the revision that they started from.
+// Lives on the UI thread. A revision, above 0, names one state of the document: a command takes it to a new
+// one, undoing it brings back the old one. Jobs remember the revision that they started from.
 class DocumentSession : public QObject {
     Q_OBJECT
 
@@ -43,28 +43,54 @@ class DocumentSession : public QObject {
     bool hasAlpha() const;
 
     const QString& path() const { return mPath; }
+    const QString& photoPath() const { return mPhotoPath; }
     // What the window calls it: the file's name, or the photo's.
     QString displayName() const;
     // Where a dialog should start, and under which name: beside the photo or the document.
     QString suggestedPath(const QString& suffix) const;
 
     uint64_t revision() const { return mRevision; }
+    uint64_t savedRevision() const { return mSavedRevision; }
     bool modified() const { return mRevision != mSavedRevision; }
-    QUndoStack& history() { return mHistory; }
+    History& history() { return mHistory; }
+    const History& history() const { return mHistory; }
+
+    Selection& selection() { return mSelection; }
+    const Selection& selection() const { return mSelection; }
+    // Of the mesh as it is shown now; references hold until the next change.
+    const PatchQuery& query() { return mIndex.query(mDocument.mesh); }
+    const PatchColours& colours() { return mIndex.colours(mDocument.mesh); }
+
+    // Whether an EditSession is open: the document then is a preview, without a revision of its own.
+    bool editing() const { return mEditing; }
+    // Runs `work` now, or as soon as no EditSession is open (from the event loop, in the order in which it
+    // was asked for). Not at all where the session goes first.
+    void whenIdle(std::function<void()> work);
 
     // Tells the session that `revision` is now in the file at `path`, with the step to which its colours were
     // rounded.
     void markSaved(uint64_t revision, const QString& path, std::optional<double> colourStep);
+    // No state of the session is in a file.
+    void markUnsaved();
+    // The photo has been found, or another one takes its place.
+    void setPhoto(Photo photo, const QString& path);
 
   signals:
     void changed(const tessera::Change& change);
+    // An EditSession has been opened or closed.
+    void editingChanged();
 
   private:
-    friend class ReplaceMesh;
+    friend class EditCommand;
+    friend class EditSession;
 
     uint64_t newRevision() { return ++mLastRevision; }
     // Exchanges the document and its revision with `document` and `revision`.
-    void swapState(Document& document, uint64_t& revision);
+    void swapState(Document& document, uint64_t& revision, const Change& change);
+    void showPreview(PatchMesh mesh, const Change& change);
+    void announce(const PatchMesh& before, const Change& change);
+    void setEditing(bool editing);
+    void runWaiting();
 
     Document mDocument;
     Photo mPhoto;
@@ -73,7 +99,11 @@ class DocumentSession : public QObject {
     uint64_t mLastRevision = 1;
     uint64_t mRevision = 1;
     uint64_t mSavedRevision = 1;
-    QUndoStack mHistory;
+    bool mEditing = false;
+    std::deque<std::function<void()>> mWaiting;
+    History mHistory;
+    Selection mSelection;
+    MeshIndex mIndex;
 };
 
 }  // namespace tessera

@@ -1,9 +1,11 @@
 // See file_service.h.
 #include "app/file_service.h"
 
+#include <QBuffer>
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
+#include <QStandardPaths>
 
 #include "core/base/sha256.h"
 #include "core/document/codec.h"
@@ -32,8 +34,9 @@ Result<Bytes> readBytes(const QString& path) {
     return bytes;
 }
 
-Photo makePhoto(Image image) {
+Photo makePhoto(Image image, std::shared_ptr<const Bytes> bytes) {
     Photo photo;
+    photo.bytes = std::move(bytes);
     photo.image = std::make_shared<const Image>(std::move(image));
     photo.pyramid = std::make_shared<const PicturePyramid>(toQImage(*photo.image));
     return photo;
@@ -64,7 +67,7 @@ Result<OpenedFile> openDocument(const QString& path, Progress& progress) {
     auto photo = readImage(*bytes, source.fileName);
     const PatchMesh& mesh = opened.document.mesh;
     if (photo && photo->image.width() == mesh.width() && photo->image.height() == mesh.height())
-        opened.photo = makePhoto(std::move(photo->image));
+        opened.photo = makePhoto(std::move(photo->image), bytes);
     return opened;
 }
 
@@ -75,7 +78,7 @@ Result<OpenedFile> openPicture(const QString& path, Bytes bytes, Progress& progr
     OpenedFile opened{.document = {}, .photo = {}, .path = {}, .photoPath = path};
     opened.document.source = std::move(loaded->source);
     opened.document.embeddedSource = std::make_shared<const Bytes>(std::move(bytes));
-    opened.photo = makePhoto(std::move(loaded->image));
+    opened.photo = makePhoto(std::move(loaded->image), opened.document.embeddedSource);
     return opened;
 }
 
@@ -88,6 +91,18 @@ Result<OpenedFile> openFile(const QString& path, Progress& progress) {
     if (!progress.step(.1)) return stopped();
     if (looksLikeDocument(*bytes)) return openDocument(path, progress);
     return openPicture(path, std::move(*bytes), progress);
+}
+
+Result<OpenedFile> openPasted(const QImage& picture, Progress& progress) {
+    progress.beginStage("reading", 1);
+    QByteArray png;
+    QBuffer buffer(&png);
+    if (!buffer.open(QIODevice::WriteOnly) || !picture.save(&buffer, "PNG"))
+        return failure(ErrorCode::CannotRead, QObject::tr("There is no picture to paste.").toStdString());
+    if (!progress.step(.3)) return stopped();
+    const QString pictures = QStandardPaths::writableLocation(QStandardPaths::PicturesLocation);
+    const QString path = QDir(pictures).filePath(QObject::tr("Pasted Picture") + ".png");
+    return openPicture(path, Bytes(png.begin(), png.end()), progress);
 }
 
 QString openFilter() {

@@ -19,6 +19,9 @@ struct OpenedFile {
 // Reads and decodes; for workers. Fails with what core says of the file, or CannotRead.
 Result<OpenedFile> openFile(const QString& path, Progress& progress);
 
+// A picture that has no file, as a document of its PNG. Fails with CannotRead where it is empty.
+Result<OpenedFile> openPasted(const QImage& picture, Progress& progress);
+
 // The endings of the files that the open dialog offers, as a filter of QFileDialog.
 QString openFilter();
 

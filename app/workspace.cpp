@@ -1,170 +1,185 @@
-// See workspace.h.
+// See workspace.h. Vectorizing, saving and exporting are in workspace_jobs.cpp.
 #include "app/workspace.h"
 
 #include <QFileInfo>
-#include <QPointer>
-#include <algorithm>
+#include <utility>
 
-#include "app/commands/replace_mesh.h"
 #include "app/file_service.h"
 #include "app/jobs/open_job.h"
-#include "app/jobs/save_job.h"
 
 namespace tessera {
-
-QString asSentence(const std::string& text) {
-    QString sentence = QString::fromStdString(text).trimmed();
-    if (sentence.isEmpty()) return sentence;
-    sentence[0] = sentence[0].toUpper();
-    return sentence.endsWith('.') ? sentence : sentence + '.';
-}
 
 Workspace::Workspace(QObject* parent) : QObject(parent) {}
 
 Workspace::~Workspace() {
-    // Before the session that they would report to.
-    const QList<Job*> jobs = std::exchange(mJobs, {});
-    for (Job* job : jobs) {
-        job->disconnect(this);
-        delete job;
+    // Before the sessions that they would report to.
+    const QList<RunningJob> jobs = std::exchange(mJobs, {});
+    for (const RunningJob& running : jobs) {
+        running.job->disconnect(this);
+        delete running.job;
     }
+}
+
+void Workspace::setCurrent(DocumentSession* session) {
+    if (session == mCurrent) return;
+    mCurrent = session;
+    emit sessionChanged();
+}
+
+void Workspace::moveSession(int from, int to) {
+    if (from == to || from < 0 || to < 0 || from >= mSessions.size() || to >= mSessions.size()) return;
+    mSessions.move(from, to);
+    emit sessionMoved(from, to);
 }
 
 void Workspace::open(const QString& path) {
-    stopAll(JobKind::Open);
-    Job* job = startOpenJob(this, path, [this, path](Result<OpenedFile> opened) {
-        if (opened)
-            adopt(std::move(*opened), path);
-        else
-            report(opened.error());
-    });
-    track(job);
-}
-
-void Workspace::adopt(OpenedFile opened, const QString& path) {
-    stopAll(JobKind::Vectorize);
-    DocumentSession* previous = mSession;
-    mSession = new DocumentSession(std::move(opened.document), std::move(opened.photo),
-                                   std::move(opened.path), std::move(opened.photoPath), this);
-    emit sessionChanged();
-    emit fileUsed(path);
-    delete previous;
-}
-
-bool Workspace::canVectorize() const {
-    return mSession && mSession->photo().image && !running(JobKind::Vectorize);
-}
-
-void Workspace::vectorize(const VectorizeSettings& settings) {
-    if (!canVectorize()) return;
-    const QPointer<DocumentSession> session = mSession;
-    const uint64_t revision = mSession->revision();
-    Job* job = startVectorizeJob(this, mSession->displayName(), mSession->photo().image, settings,
-                                 [this, session, revision, settings](Result<Vectorized> vectorized) {
-                                     if (!session || session != mSession) return;
-                                     if (vectorized)
-                                         applyVectorized(revision, settings, std::move(*vectorized));
-                                     else
-                                         report(vectorized.error());
-                                 });
-    track(job);
-}
-
-void Workspace::applyVectorized(uint64_t revision, const VectorizeSettings& settings, Vectorized vectorized) {
-    Document after = mSession->document();
-    after.mesh = std::move(vectorized.result.mesh);
-    after.markEdited();
-    after.colourStep.reset();
-    after.settings = settings;
-    after.report = std::move(vectorized.result.report);
-    after.difference = vectorized.difference;
-    const QString shortfall = asSentence(after.report.shortfall);
-    const QPointer<DocumentSession> session = mSession;
-    const auto apply = [session, after = std::move(after)] {
-        if (session) session->history().push(new ReplaceMesh(*session, after));
-    };
-    if (mSession->revision() != revision) {
-        emit said({.kind = Message::Kind::Info,
-                   .text = tr("The document has changed since this vectorization was started."),
-                   .actionText = tr("Use It Anyway"),
-                   .action = apply});
-        return;
-    }
-    apply();
-    if (!shortfall.isEmpty()) emit said({.kind = Message::Kind::Info, .text = shortfall});
-}
-
-void Workspace::save(const QString& path, bool embedPhoto, std::function<void()> then) {
-    if (!mSession || !mSession->hasMesh()) return;
-    if (Job* job = find(JobKind::Save)) {
-        // The one that runs may hold an older state: look again when it has ended.
-        connect(job, &Job::finished, this, [this, path, embedPhoto, then = std::move(then)] {
-            if (!mSession) return;
-            if (mSession->modified() || mSession->path() != path) return save(path, embedPhoto, then);
-            if (then) then();
-        });
-        return;
-    }
-    Document snapshot = mSession->document();
-    if (!embedPhoto) snapshot.embeddedSource.reset();
-    const QPointer<DocumentSession> session = mSession;
-    const uint64_t revision = mSession->revision();
-    Job* job = startSaveJob(this, std::move(snapshot), path,
-                            [this, session, revision, path, then = std::move(then)](Result<Saved> saved) {
-                                if (!saved) return report(saved.error());
+    const QString absolute = QFileInfo(path).absoluteFilePath();
+    for (DocumentSession* session : std::as_const(mSessions))
+        if (!session->path().isEmpty() && QFileInfo(session->path()).absoluteFilePath() == absolute)
+            return setCurrent(session);
+    if (mOpening.contains(absolute)) return;
+    mOpening.insert(absolute);
+    const auto read = [path](Progress& progress) { return openFile(path, progress); };
+    Job* job = startOpenJob(this, QFileInfo(path).fileName(), read,
+                            [this, path, absolute](Result<OpenedFile> opened) {
+                                mOpening.remove(absolute);
+                                if (!opened) return report(opened.error());
+                                adopt(std::move(*opened));
                                 emit fileUsed(path);
-                                if (session) session->markSaved(revision, path, saved->colourStep);
-                                if (then) then();
                             });
-    track(job);
+    track(job, nullptr);
 }
 
-void Workspace::exportPicture(const ExportRequest& request) {
-    if (!mSession || !mSession->hasMesh() || running(JobKind::Export)) return;
-    Job* job = startExportJob(
-        this, mSession->document().mesh, request, [this, path = request.path](Result<Exported> exported) {
-            if (!exported) return report(exported.error());
-            emit said(
-                {.kind = Message::Kind::Info, .text = tr("Exported “%1”.").arg(QFileInfo(path).fileName())});
+void Workspace::paste(const QImage& picture) {
+    const auto read = [picture](Progress& progress) { return openPasted(picture, progress); };
+    track(startOpenJob(this, tr("the pasted picture"), read,
+                       [this](Result<OpenedFile> opened) {
+                           if (!opened) return report(opened.error());
+                           adopt(std::move(*opened));
+                       }),
+          nullptr);
+}
+
+void Workspace::openRecovered(const QString& dataPath, const QString& path, const QString& photoPath,
+                              std::function<void(DocumentSession&)> adopted) {
+    const auto read = [dataPath](Progress& progress) { return openFile(dataPath, progress); };
+    const QString name = QFileInfo(path.isEmpty() ? photoPath : path).fileName();
+    Job* job =
+        startOpenJob(this, name, read, [=, this, adopted = std::move(adopted)](Result<OpenedFile> opened) {
+            if (!opened) return report(opened.error());
+            opened->path = path;
+            opened->photoPath = photoPath;
+            DocumentSession* session = adopt(std::move(*opened));
+            session->markUnsaved();
+            adopted(*session);
         });
-    track(job);
+    track(job, nullptr);
 }
 
-Job* Workspace::find(JobKind kind) const {
-    const auto job =
-        std::find_if(mJobs.begin(), mJobs.end(), [&](const Job* j) { return j->kind() == kind; });
-    return job == mJobs.end() ? nullptr : *job;
+DocumentSession* Workspace::adopt(OpenedFile opened) {
+    auto* session = new DocumentSession(std::move(opened.document), std::move(opened.photo),
+                                        std::move(opened.path), std::move(opened.photoPath), this);
+    session->history().setMemoryLimit(mHistoryLimit);
+    mSessions.append(session);
+    emit sessionAdded(session);
+    setCurrent(session);
+    return session;
 }
 
-void Workspace::cancel() {
-    if (Job* job = currentJob(); job && job->kind() != JobKind::Save) job->stop();
-    emit jobChanged();
+void Workspace::relinkPhoto(const QString& path) {
+    if (!mCurrent || find(JobKind::Relink, mCurrent)) return;
+    const QPointer<DocumentSession> session = mCurrent;
+    const auto read = [path](Progress& progress) { return openFile(path, progress); };
+    Job* job = startOpenJob(
+        this, QFileInfo(path).fileName(), read,
+        [this, session, path](Result<OpenedFile> opened) {
+            if (!opened) return report(opened.error());
+            if (session) applyRelinked(*session, std::move(*opened), path);
+        },
+        JobKind::Relink);
+    track(job, mCurrent);
 }
 
-void Workspace::track(Job* job) {
-    mJobs.append(job);
-    connect(job, &Job::progressed, this, &Workspace::jobChanged);
-    connect(job, &Job::finished, this, [this, job] {
-        mJobs.removeOne(job);
-        emit jobChanged();
+void Workspace::applyRelinked(DocumentSession& session, OpenedFile opened, const QString& path) {
+    const QString name = QFileInfo(path).fileName();
+    const auto refuse = [&](const QString& why) { emit said({.kind = Message::Kind::Error, .text = why}); };
+    if (!opened.path.isEmpty()) return refuse(tr("“%1” is a Tessera document; choose a picture.").arg(name));
+    const Image& image = *opened.photo.image;
+    if (session.hasMesh() && (image.width() != session.width() || image.height() != session.height()))
+        return refuse(tr("“%1” has %2 × %3 pixels, the document %4 × %5; choose the picture that it was made "
+                         "from.")
+                          .arg(name)
+                          .arg(image.width())
+                          .arg(image.height())
+                          .arg(session.width())
+                          .arg(session.height()));
+    const QPointer<DocumentSession> target = &session;
+    const auto apply = [target, photo = opened.photo, path] {
+        if (target) target->whenIdle([target, photo, path] { target->setPhoto(photo, path); });
+    };
+    const std::string& known = session.document().source.sha256;
+    if (known.empty() || known == opened.document.source.sha256) return apply();
+    emit said({.kind = Message::Kind::Info,
+               .text = tr("“%1” is not the picture that the document was made from.").arg(name),
+               .actionText = tr("Use It Anyway"),
+               .action = apply});
+}
+
+void Workspace::close(DocumentSession* session, const AskToClose& ask, std::function<void(bool)> then) {
+    const QPointer<DocumentSession> target = session;
+    const auto finished = [then](bool closed) {
+        if (then) then(closed);
+    };
+    session->whenIdle([this, target, ask, finished] {
+        if (Job* job = find(JobKind::Save, target)) {
+            // It may make the question needless.
+            connect(job, &Job::finished, this, [this, target, ask, finished] {
+                if (target) close(target, ask, finished);
+            });
+            return;
+        }
+        if (target->modified()) {
+            const CloseAnswer answer = ask(*target);
+            if (!target || answer.kind == CloseAnswer::Kind::Cancel) return finished(false);
+            const QString path = answer.path.isEmpty() ? target->path() : answer.path;
+            if (answer.kind == CloseAnswer::Kind::Save) {
+                if (path.isEmpty()) return finished(false);
+                return save(target, path, answer.embedPhoto, [this, target, ask, finished] {
+                    if (target) close(target, ask, finished);
+                });
+            }
+        }
+        remove(target);
+        finished(true);
     });
-    emit jobChanged();
 }
 
-void Workspace::stopAll(JobKind kind) {
-    const QList<Job*> jobs = mJobs;
-    for (Job* job : jobs) {
-        if (job->kind() != kind) continue;
-        mJobs.removeOne(job);
-        job->disconnect(this);
-        delete job;  // drops its result too
-    }
-    emit jobChanged();
+void Workspace::closeAll(const AskToClose& ask, std::function<void(bool)> then) {
+    if (mSessions.isEmpty()) return then(true);
+    close(mSessions.last(), ask, [this, ask, then = std::move(then)](bool closed) {
+        if (!closed) return then(false);
+        closeAll(ask, then);
+    });
 }
 
-void Workspace::report(const Error& error) {
-    if (error.code == ErrorCode::Stopped) return;
-    emit said({.kind = Message::Kind::Error, .text = asSentence(error.message)});
+void Workspace::remove(DocumentSession* session) {
+    stopAll(JobKind::Vectorize, session);
+    stopAll(JobKind::Relink, session);
+    const qsizetype at = mSessions.indexOf(session);
+    mSessions.removeAt(at);
+    // The neighbour on the right takes its place, or else the one on the left.
+    if (session == mCurrent)
+        setCurrent(mSessions.isEmpty() ? nullptr : mSessions[std::min(at, mSessions.size() - 1)]);
+    emit sessionClosed(session);
+    // A later session could have the same address.
+    for (RunningJob& running : mJobs)
+        if (running.session == session) running.session = nullptr;
+    session->deleteLater();
+}
+
+void Workspace::setHistoryLimit(size_t bytes) {
+    mHistoryLimit = bytes;
+    for (DocumentSession* session : std::as_const(mSessions)) session->history().setMemoryLimit(bytes);
 }
 
 }  // namespace tessera

@@ -1,33 +1,37 @@
-// What the window works on: the one open document and the jobs that read, make and write it. No widgets, so
+// What the window works on: the open documents and the jobs that read, make and write them. No widgets, so
 // that the rules (what stops what, what is thrown away when) are in one place and testable.
 #pragma once
 
+#include <QImage>
 #include <QList>
 #include <QObject>
+#include <QPointer>
+#include <QSet>
 #include <functional>
 
 #include "app/document_session.h"
 #include "app/jobs/export_job.h"
 #include "app/jobs/job.h"
 #include "app/jobs/vectorize_job.h"
+#include "app/message.h"
 #include "core/vectorize/settings.h"
 
 namespace tessera {
 
 struct OpenedFile;
 
-// Something to tell the user in one sentence. With an action, the sentence asks whether to do it.
-struct Message {
-    enum class Kind { Info, Error };
-    Kind kind = Kind::Info;
-    QString text = {};
-    QString actionText = {};
-    std::function<void()> action = {};
+// What to do with a document that has unsaved changes and is to be closed. To save one that has no path yet,
+// `path` must say where.
+struct CloseAnswer {
+    enum class Kind { Save, Discard, Cancel };
+    Kind kind = Kind::Cancel;
+    QString path = {};
+    bool embedPhoto = true;
 };
+using AskToClose = std::function<CloseAnswer(DocumentSession&)>;
 
-// Core's messages are clauses that a command line puts after "error: "; a window shows them as sentences.
-QString asSentence(const std::string& text);
-
+// Where no document is named, calls are about the current one. Results of jobs, saves and closing wait for
+// the end of an open EditSession.
 class Workspace : public QObject {
     Q_OBJECT
 
@@ -35,46 +39,90 @@ class Workspace : public QObject {
     explicit Workspace(QObject* parent = nullptr);
     ~Workspace() override;
 
-    // Null until the first file has been opened.
-    DocumentSession* session() const { return mSession; }
+    // In the order of the tabs.
+    const QList<DocumentSession*>& sessions() const { return mSessions; }
+    // The current one; null where none is open.
+    DocumentSession* session() const { return mCurrent; }
+    void setCurrent(DocumentSession* session);
+    void moveSession(int from, int to);
 
-    // Reads the file; the open document stays until it has been read. A later open() replaces an earlier one
-    // that is still reading. What runs on the open document is stopped when the new one takes its place.
+    // Reads the file, then makes it the current document; one that is open already becomes it at once.
     void open(const QString& path);
-    // Needs a photo; does nothing while a vectorization is running. The result becomes one undoable step.
+    // A picture from the clipboard, as a new document.
+    void paste(const QImage& picture);
+    // A document that a run before this one left behind; `path` is where it was saved, if anywhere. It counts
+    // as modified. `adopted` gets the session.
+    void openRecovered(const QString& dataPath, const QString& path, const QString& photoPath,
+                       std::function<void(DocumentSession&)> adopted);
+    // Makes the picture in a file the photo of the document. Fails where it has another size; asks where it
+    // is another picture than the one that was vectorized.
+    void relinkPhoto(const QString& path);
+
+    // Closes after asking where changes would be lost and saving where the answer is so. Stops what runs on
+    // the document, exports excepted. `then` hears whether it was closed.
+    void close(DocumentSession* session, const AskToClose& ask, std::function<void(bool)> then = {});
+    // One after the other, until one is kept.
+    void closeAll(const AskToClose& ask, std::function<void(bool)> then);
+
+    // Needs a photo; does nothing while a vectorization of it is running. The result becomes one undoable
+    // step.
     void vectorize(const VectorizeSettings& settings);
     bool canVectorize() const;
     // Saves a snapshot of a document with patches, after a save that is still running; `then` runs after it
     // has been written, and not where that failed.
     void save(const QString& path, bool embedPhoto, std::function<void()> then = {});
+    void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void()> then);
     void exportPicture(const ExportRequest& request);
 
+    // Of all documents, those to come included.
+    void setHistoryLimit(size_t bytes);
+
     // The job to show: the one started last that still runs, or null.
-    Job* currentJob() const { return mJobs.isEmpty() ? nullptr : mJobs.last(); }
-    bool running(JobKind kind) const { return find(kind); }
+    Job* currentJob() const { return mJobs.isEmpty() ? nullptr : mJobs.last().job; }
+    // Whether the current document has such a job; of kind Open: whether there is one at all.
+    bool running(JobKind kind) const { return find(kind, mCurrent); }
     // Asks the current job to stop, unless it is a save, which is short and wanted.
     void cancel();
 
   signals:
-    // Another document is open.
+    // Another document is the current one, or none. The one before is still there.
     void sessionChanged();
+    void sessionAdded(tessera::DocumentSession* session);
+    // For the last time; it goes when control is back in the event loop.
+    void sessionClosed(tessera::DocumentSession* session);
+    void sessionMoved(int from, int to);
     // A file has been opened from, or saved to, this path.
     void fileUsed(const QString& path);
+    // A document is in its file as it was when the save began.
+    void saved(tessera::DocumentSession* session);
     // Another job is the current one, or it has moved on.
     void jobChanged();
     void said(const tessera::Message& message);
 
   private:
-    void adopt(OpenedFile opened, const QString& path);
-    void applyVectorized(uint64_t revision, const VectorizeSettings& settings, Vectorized vectorized);
-    Job* find(JobKind kind) const;
-    void track(Job* job);
-    void stopAll(JobKind kind);
+    struct RunningJob {
+        Job* job;
+        const DocumentSession* session;  // null for Open
+    };
+
+    DocumentSession* adopt(OpenedFile opened);
+    void remove(DocumentSession* session);
+    void applyVectorized(DocumentSession& session, uint64_t revision, const VectorizeSettings& settings,
+                         Vectorized vectorized);
+    void applyRelinked(DocumentSession& session, OpenedFile opened, const QString& path);
+    void startSave(DocumentSession& session, const QString& path, bool embedPhoto,
+                   std::function<void()> then);
+    Job* find(JobKind kind, const DocumentSession* session) const;
+    void track(Job* job, const DocumentSession* session);
+    void stopAll(JobKind kind, const DocumentSession* session);
     // Says the error, unless it is that the user stopped the job.
     void report(const Error& error);
 
-    DocumentSession* mSession = nullptr;
-    QList<Job*> mJobs;
+    QList<DocumentSession*> mSessions;
+    DocumentSession* mCurrent = nullptr;
+    QList<RunningJob> mJobs;
+    QSet<QString> mOpening;
+    size_t mHistoryLimit = History::kDefaultMemoryLimit;
 };
 
 }  // namespace tessera

@@ -37,7 +37,7 @@ void CanvasWidget::setSession(DocumentSession* session) {
     mPeeking = false;
     if (mSession)
         connect(mSession, &DocumentSession::changed, this, [this](const Change& change) {
-            if (change.mesh) reloadMesh();
+            if (change.mesh()) reloadMesh();
         });
     reloadMesh();
     fit();

@@ -103,8 +103,8 @@ void MainWindow::connectActions() {
     on(ActionId::SaveAs, [this] { chooseAndSave(); });
     on(ActionId::Export, [this] { chooseAndExport(); });
     on(ActionId::Quit, [this] { close(); });
-    on(ActionId::Undo, [this] { mHistories.undo(); });
-    on(ActionId::Redo, [this] { mHistories.redo(); });
+    on(ActionId::Undo, [this] { mWorkspace.session()->history().undo(); });
+    on(ActionId::Redo, [this] { mWorkspace.session()->history().redo(); });
     on(ActionId::ZoomIn, [this] { mCanvas->zoomStep(true); });
     on(ActionId::ZoomOut, [this] { mCanvas->zoomStep(false); });
     on(ActionId::ZoomFit, [this] { mCanvas->fit(); });
@@ -150,15 +150,20 @@ void MainWindow::connectWorkspace() {
             [this] { mStatus->showZoom(mCanvas->view().scale()); });
     connect(mCanvas, &CanvasWidget::cursorMoved, mStatus, &StatusBar::showCursor);
     connect(mPanel, &VectorizePanel::editingDone, this, [this] { mCanvas->setFocus(); });
-    connect(&mHistories, &QUndoGroup::canUndoChanged, this, &MainWindow::updateActions);
-    connect(&mHistories, &QUndoGroup::canRedoChanged, this, &MainWindow::updateActions);
-    connect(&mHistories, &QUndoGroup::undoTextChanged, this, &MainWindow::updateActions);
 }
 
 void MainWindow::adoptSession() {
     DocumentSession* session = mWorkspace.session();
-    mHistories.addStack(&session->history());
-    mHistories.setActiveStack(&session->history());
+    if (!session) {
+        mCanvas->setSession(nullptr);
+        return showSession();
+    }
+    // This window shows one document; whether the one before may go was asked before.
+    const QList<DocumentSession*> open = mWorkspace.sessions();
+    for (DocumentSession* other : open)
+        if (other != session)
+            mWorkspace.close(other, [](auto&) { return CloseAnswer{CloseAnswer::Kind::Discard}; });
+    connect(&session->history(), &History::changed, this, &MainWindow::updateActions);
     mMessages->hide();
     (*mActions)[ActionId::ShowOriginal]->setChecked(false);
     mCanvas->setSession(session);
@@ -196,10 +201,11 @@ void MainWindow::updateActions() {
     for (const ActionId id : {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints})
         a[id]->setEnabled(hasMesh);
     a[ActionId::ShowOriginal]->setEnabled(hasMesh && session->photo().pyramid);
-    a[ActionId::Undo]->setEnabled(mHistories.canUndo());
-    a[ActionId::Redo]->setEnabled(mHistories.canRedo());
-    a[ActionId::Undo]->setText(tr("&Undo %1").arg(mHistories.undoText()).trimmed());
-    a[ActionId::Redo]->setText(tr("&Redo %1").arg(mHistories.redoText()).trimmed());
+    const History* history = session ? &session->history() : nullptr;
+    a[ActionId::Undo]->setEnabled(history && history->canUndo());
+    a[ActionId::Redo]->setEnabled(history && history->canRedo());
+    a[ActionId::Undo]->setText(tr("&Undo %1").arg(history ? history->undoText() : QString()).trimmed());
+    a[ActionId::Redo]->setText(tr("&Redo %1").arg(history ? history->redoText() : QString()).trimmed());
 }
 
 void MainWindow::updateOverlays() {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <QMainWindow>
-#include <QUndoGroup>
 #include <functional>
 
 #include "app/settings.h"
@@ -71,7 +70,6 @@ class MainWindow : public QMainWindow {
     void setPanelsHidden(bool hidden);
 
     Settings mSettings;
-    QUndoGroup mHistories;
     std::unique_ptr<ActionTable> mActions;
     CanvasWidget* mCanvas = nullptr;
     QWidget* mWelcome = nullptr;

@@ -4,7 +4,7 @@
 #include <QFrame>
 #include <QTimer>
 
-#include "app/workspace.h"
+#include "app/message.h"
 
 class QLabel;
 class QPushButton;

@@ -1,14 +1,12 @@
 // See open_job.h.
 #include "app/jobs/open_job.h"
 
-#include <QFileInfo>
-
 namespace tessera {
 
-Job* startOpenJob(QObject* owner, const QString& path, std::function<void(Result<OpenedFile>)> deliver) {
-    auto* job = new Job(JobKind::Open, QObject::tr("Opening %1").arg(QFileInfo(path).fileName()), owner);
-    job->start<OpenedFile>([path](Progress& progress) { return openFile(path, progress); },
-                           std::move(deliver));
+Job* startOpenJob(QObject* owner, const QString& name, ReadFile read,
+                  std::function<void(Result<OpenedFile>)> deliver, JobKind kind) {
+    auto* job = new Job(kind, QObject::tr("Opening %1").arg(name), owner);
+    job->start<OpenedFile>(std::move(read), std::move(deliver));
     return job;
 }
 

@@ -6,6 +6,10 @@
 
 namespace tessera {
 
-Job* startOpenJob(QObject* owner, const QString& path, std::function<void(Result<OpenedFile>)> deliver);
+using ReadFile = std::function<Result<OpenedFile>(Progress&)>;
+
+// `read` runs on the worker; `name` says to a person what it reads.
+Job* startOpenJob(QObject* owner, const QString& name, ReadFile read,
+                  std::function<void(Result<OpenedFile>)> deliver, JobKind kind = JobKind::Open);
 
 }  // namespace tessera

@@ -52,6 +52,22 @@ class PagedArray {
         return i < mSize && i < other.mSize && mPages[i >> kPageBits] == other.mPages[i >> kPageBits];
     }
 
+    // The memory of the pages that `other` does not share, in bytes, and of the list of pages;
+    // `outside(element)` is what an element holds beyond itself.
+    template <class Outside>
+    size_t bytesBeyond(const PagedArray& other, Outside&& outside) const {
+        size_t bytes = mPages.size() * sizeof(mPages[0]);
+        for (size_t page = 0; page < mPages.size(); ++page) {
+            if (page < other.mPages.size() && mPages[page] == other.mPages[page]) continue;
+            bytes += sizeof(Page);
+            for (const T& element : mPages[page]->at) bytes += outside(element);
+        }
+        return bytes;
+    }
+    size_t bytesBeyond(const PagedArray& other) const {
+        return bytesBeyond(other, [](const T&) { return size_t{0}; });
+    }
+
   private:
     struct Page {
         T at[kPageSize]{};

@@ -8,6 +8,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/document/chunk_file.h"
+#include "core/document/edit_codec.h"
 #include "core/document/info_codec.h"
 #include "core/document/mesh_codec.h"
 
@@ -18,9 +19,12 @@ namespace {
 constexpr ChunkTag kConnectivity{'M', 'E', 'S', 'H'}, kGeometry{'G', 'E', 'O', 'M'},
     kCurves{'C', 'U', 'R', 'V'}, kColours{'C', 'O', 'L', 'R'}, kSettings{'S', 'E', 'T', 'T'},
     kReport{'R', 'E', 'P', 'T'}, kSource{'S', 'R', 'C', 'E'}, kProfile{'I', 'C', 'C', 'P'},
-    kEmbedded{'E', 'M', 'B', 'D'}, kPreview{'P', 'R', 'E', 'V'}, kDifference{'D', 'I', 'F', 'F'};
-constexpr std::array kKnownTags{kConnectivity, kGeometry, kCurves,   kColours, kSettings,  kReport,
-                                kSource,       kProfile,  kEmbedded, kPreview, kDifference};
+    kEmbedded{'E', 'M', 'B', 'D'}, kPreview{'P', 'R', 'E', 'V'}, kDifference{'D', 'I', 'F', 'F'},
+    kAttributes{'A', 'T', 'T', 'R'}, kBreaks{'B', 'R', 'K', 'S'}, kSelections{'S', 'E', 'L', 'S'},
+    kFitted{'F', 'I', 'T', 'D'};
+constexpr std::array kKnownTags{kConnectivity, kGeometry,   kCurves,  kColours,    kSettings,
+                                kReport,       kSource,     kProfile, kEmbedded,   kPreview,
+                                kDifference,   kAttributes, kBreaks,  kSelections, kFitted};
 
 tl::unexpected<Error> damagedChunk(const Chunk& chunk, const std::string& what) {
     return failure(ErrorCode::DamagedDocument,
@@ -95,6 +99,24 @@ Result<void> decodeInfoChunks(const ChunkIndex& index, Document& d) {
         });
 }
 
+Result<void> decodeEditChunks(const ChunkIndex& index, Document& d) {
+    const auto packed = [&](const ChunkTag& tag, auto&& decode) {
+        return index.optional(tag, [&](std::span<const uint8_t> bytes) {
+            std::vector<uint8_t> all;
+            std::string wrong = readInflated(bytes, all);
+            return wrong.empty() ? decode(all) : wrong;
+        });
+    };
+    using Bytes = const std::vector<uint8_t>&;
+    return packed(kAttributes, [&](Bytes b) { return decodePatchAttributes(b, d.mesh); })
+        .and_then([&] { return packed(kBreaks, [&](Bytes b) { return decodeColourBreaks(b, d.mesh); }); })
+        .and_then([&] {
+            return packed(kSelections, [&](Bytes b) { return decodeSelections(b, d.mesh, d.selections); });
+        })
+        .and_then(
+            [&] { return packed(kFitted, [&](Bytes b) { return decodeFitted(b, d.mesh, d.fitted); }); });
+}
+
 std::string quoted(const std::string& path) {
     return "'" + path + "'";
 }
@@ -128,6 +150,14 @@ Result<std::vector<uint8_t>> encodeDocument(Document& document) {
     if (document.difference) add(kDifference, false, encodeDifference(*document.difference));
     if (document.previewPng) add(kPreview, false, deflated(*document.previewPng));
     if (document.embeddedSource) add(kEmbedded, true, deflated(*document.embeddedSource));
+    const FileNumbers numbers(document.mesh.connectivity(), mesh->order);
+    const auto addEdits = [&](const ChunkTag& tag, const std::vector<uint8_t>& bytes) {
+        if (!bytes.empty()) add(tag, false, deflated(bytes));
+    };
+    addEdits(kAttributes, encodePatchAttributes(document.mesh, numbers));
+    addEdits(kBreaks, encodeColourBreaks(document.mesh, numbers));
+    addEdits(kSelections, encodeSelections(document.selections, numbers));
+    if (document.fitted) addEdits(kFitted, encodeFitted(document.mesh, *document.fitted, numbers));
     for (const UnknownChunk& chunk : document.unknownChunks)
         chunks.push_back({chunk.tag, chunk.safeToCopy, chunk.bytes, 0});
     return packChunks(kFormatVersion, chunks);
@@ -148,6 +178,7 @@ Result<Document> decodeDocument(std::span<const uint8_t> bytes) {
     }
     return decodeMeshChunks(index, chunkFileVersion(bytes), document)
         .and_then([&] { return decodeInfoChunks(index, document); })
+        .and_then([&] { return decodeEditChunks(index, document); })
         .map([&] { return std::move(document); });
 }
 

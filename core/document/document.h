@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/edit/patch_set.h"
 #include "core/image/image_compare.h"
 #include "core/image/image_io.h"
 #include "core/mesh/patch_mesh.h"
@@ -25,8 +26,19 @@ struct UnknownChunk {
     bool operator==(const UnknownChunk&) const = default;
 };
 
+struct NamedSelection {
+    std::string name;
+    PatchSet patches;
+
+    bool operator==(const NamedSelection&) const = default;
+};
+
 struct Document {
     PatchMesh mesh;
+    // The mesh as it was vectorized, for ways back to it; shares what no edit has changed. Patches that edits
+    // of the connectivity replaced have no counterpart there (hasFitted). None where nothing was edited.
+    std::optional<PatchMesh> fitted;
+    std::vector<NamedSelection> selections;
     // The step, in colour units (1 is 255 levels), to which colours are rounded in the file. Chosen at the
     // first encoding, then kept for ever: decoding and encoding again gives the same bytes. For splines of
     // the default centres no pixel moves by more than 0.1 level; for splines on sites the picture loses at

@@ -298,6 +298,7 @@ Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep) {
     chunks.geometry = geometryCoder.finish();
     chunks.curves = curveCoder.finish();
     chunks.colours = std::move(*colours);
+    chunks.order = order;
     return chunks;
 }
 

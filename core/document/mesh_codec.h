@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/document/file_mesh.h"
 #include "core/mesh/patch_mesh.h"
 
 namespace tessera {
 
 struct MeshChunks {
     std::vector<uint8_t> connectivity, geometry, curves, colours;
+    FileOrder order;  // which element got which id
 };
 
 // The step for a mesh that is stored for the first time: for splines of the default centres

@@ -353,4 +353,9 @@ HalfedgeMesh::Compacted HalfedgeMesh::compacted() const {
     return result;
 }
 
+size_t HalfedgeMesh::bytesBeyond(const HalfedgeMesh& other) const {
+    return mHalfedges.bytesBeyond(other.mHalfedges) + mVertexHalfedge.bytesBeyond(other.mVertexHalfedge) +
+           mFaceHalfedge.bytesBeyond(other.mFaceHalfedge);
+}
+
 }  // namespace tessera

@@ -106,6 +106,9 @@ class HalfedgeMesh {
     struct Compacted;
     Compacted compacted() const;
 
+    // The memory that this mesh takes and does not share with `other`, in bytes.
+    size_t bytesBeyond(const HalfedgeMesh& other) const;
+
   private:
     struct Halfedge {
         HalfedgeId next;

@@ -101,28 +101,17 @@ void checkSplines(const PatchMesh& mesh, Findings& findings) {
 }
 
 void checkSmoothJoins(const PatchMesh& mesh, Findings& findings) {
-    const HalfedgeMesh& c = mesh.connectivity();
-    for (const SmoothJoin& join : mesh.smoothJoins()) {
-        bool sound = c.alive(join.vertex) && c.alive(join.first) && c.alive(join.second);
-        glm::dvec2 handles[2];
-        const EdgeId edges[2] = {join.first, join.second};
-        for (int k = 0; sound && k < 2; ++k) {
-            HalfedgeId h = HalfedgeMesh::halfedge(edges[k]);
-            if (c.origin(h) != join.vertex) h = HalfedgeMesh::twin(h);
-            sound = c.origin(h) == join.vertex;
-            const auto p = toPixels(mesh.controlPoints(h));
-            handles[k] = p.p[1] - p.p[0];
-        }
-        if (sound) {
-            // Each handle's end may be off by half a lattice step along either axis.
-            const double shorter = std::min(glm::length(handles[0]), glm::length(handles[1]));
-            const double slack = 2.0 / kLatticePerPixel / std::max(shorter, 1e-9);
-            const double sine = std::abs(cross(handles[0], handles[1])) /
-                                std::max(glm::length(handles[0]) * glm::length(handles[1]), 1e-12);
-            sound = glm::dot(handles[0], handles[1]) < 0 && sine <= slack;
-        }
-        if (!sound) findings.add(name("smooth join at vertex", join.vertex.index) + " is not smooth");
-    }
+    for (const SmoothJoin& join : mesh.smoothJoins())
+        if (!isSmooth(mesh, join))
+            findings.add(name("smooth join at vertex", join.vertex.index) + " is not smooth");
+}
+
+void checkBreaks(const PatchMesh& mesh, Findings& findings) {
+    mesh.forEachEdge([&](EdgeId e) {
+        const EdgeCurve& curve = mesh.curve(e);
+        if (curve.colourBreak && (curve.feature || mesh.connectivity().onBorder(e)))
+            findings.add(name("edge", e.index) + " is a colour break on a feature or on the border");
+    });
 }
 
 // Parameters of the point at s along a side of its patch.
@@ -229,6 +218,26 @@ std::vector<uint8_t> coverage(const PatchMesh& mesh) {
 
 }  // namespace
 
+bool isSmooth(const PatchMesh& mesh, const SmoothJoin& join) {
+    const HalfedgeMesh& c = mesh.connectivity();
+    if (!c.alive(join.vertex) || !c.alive(join.first) || !c.alive(join.second)) return false;
+    glm::dvec2 handles[2];
+    const EdgeId edges[2] = {join.first, join.second};
+    for (int k = 0; k < 2; ++k) {
+        HalfedgeId h = HalfedgeMesh::halfedge(edges[k]);
+        if (c.origin(h) != join.vertex) h = HalfedgeMesh::twin(h);
+        if (c.origin(h) != join.vertex) return false;
+        const auto p = toPixels(mesh.controlPoints(h));
+        handles[k] = p.p[1] - p.p[0];
+    }
+    // Each handle's end may be off by half a lattice step along either axis.
+    const double shorter = std::min(glm::length(handles[0]), glm::length(handles[1]));
+    const double slack = 2.0 / kLatticePerPixel / std::max(shorter, 1e-9);
+    const double sine = std::abs(cross(handles[0], handles[1])) /
+                        std::max(glm::length(handles[0]) * glm::length(handles[1]), 1e-12);
+    return glm::dot(handles[0], handles[1]) < 0 && sine <= slack;
+}
+
 std::vector<std::string> connectivityViolations(const HalfedgeMesh& mesh) {
     std::vector<std::string> found;
     const auto require = [&](bool sound, const char* kind, uint32_t index, const char* what) {
@@ -322,6 +331,7 @@ MeshValidation validate(const PatchMesh& mesh) {
     checkBorder(mesh, findings);
     checkSplines(mesh, findings);
     checkSmoothJoins(mesh, findings);
+    checkBreaks(mesh, findings);
     const EdgeBlur blur(mesh);
     const auto colour = [&](PatchId p, const Barycentric& at, glm::dvec2 point, double* out) {
         blurredColour(mesh, blur, p, at, point, out);
@@ -364,10 +374,38 @@ MeshValidation validate(const PatchMesh& mesh) {
     return result;
 }
 
+namespace {
+
+// Differences of colour with the length that has them.
+class SeamLevels {
+  public:
+    void add(double level, double length) {
+        mLevels.emplace_back(level, length);
+        mSum += length * level;
+        mLength += length;
+    }
+    double length() const { return mLength; }
+    double mean() const { return mLength > 0 ? mSum / mLength : 0; }
+    double p95() {
+        std::sort(mLevels.begin(), mLevels.end());
+        double passed = 0;
+        for (const auto& [level, length] : mLevels) {
+            passed += length;
+            if (passed >= .95 * mLength) return level;
+        }
+        return mLevels.empty() ? 0 : mLevels.back().first;
+    }
+
+  private:
+    std::vector<std::pair<double, double>> mLevels;
+    double mSum = 0, mLength = 0;
+};
+
+}  // namespace
+
 SeamStatistics measureSeams(const PatchMesh& mesh) {
     constexpr int kIntervals = 16;
-    std::vector<std::pair<double, double>> differences;  // level, length
-    double sum = 0, length = 0;
+    SeamLevels seams, breaks;
     const HalfedgeMesh& c = mesh.connectivity();
     const EdgeBlur blur(mesh);
     mesh.forEachEdge([&](EdgeId e) {
@@ -390,20 +428,10 @@ SeamStatistics measureSeams(const PatchMesh& mesh) {
             toWorking(mesh.colourBasis(), planes, 1);
             double difference = 0;
             for (int k = 0; k < mesh.channels(); ++k) difference += std::abs(double(apart[k]));
-            difference *= 255.0 / mesh.channels();
-            differences.emplace_back(difference, weight);
-            sum += weight * difference;
-            length += weight;
+            (mesh.curve(e).colourBreak ? breaks : seams).add(difference * 255.0 / mesh.channels(), weight);
         }
     });
-    if (differences.empty()) return {};
-    std::sort(differences.begin(), differences.end());
-    double passed = 0;
-    for (const auto& [difference, weight] : differences) {
-        passed += weight;
-        if (passed >= .95 * length) return {sum / length, difference};
-    }
-    return {sum / length, differences.back().first};
+    return {seams.mean(), seams.p95(), breaks.mean(), breaks.p95(), breaks.length()};
 }
 
 }  // namespace tessera

@@ -42,12 +42,18 @@ using ColourOf = std::function<void(PatchId, const Barycentric&, glm::dvec2 poin
 // leaves near tips and junctions, within 1e-3. (No verdict where another feature's blur reaches that middle.)
 std::vector<std::string> blurViolations(const PatchMesh& mesh, const EdgeBlur& blur, const ColourOf& colour);
 
+// Whether the two curves of a join meet at its vertex with one tangent, but for the rounding to the lattice.
+bool isSmooth(const PatchMesh& mesh, const SmoothJoin& join);
+
 // Mean |difference| of the two sides' colours, blur included, along non-feature edges inside the picture with
 // their ends, weighted by length; in levels of 1/255 of the working space, all channels together. p95 is the
-// 95th percentile.
+// 95th percentile. Colour breaks are apart from the seams that should be narrow.
 struct SeamStatistics {
     double mean = 0;
     double p95 = 0;
+    double breakMean = 0;
+    double breakP95 = 0;
+    double breakLength = 0;  // px
 };
 SeamStatistics measureSeams(const PatchMesh& mesh);
 

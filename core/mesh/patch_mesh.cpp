@@ -18,6 +18,16 @@ std::array<LatticePoint, 2> straightControlPoints(LatticePoint a, LatticePoint b
     return {LatticePoint{third(a.x, b.x), third(a.y, b.y)}, LatticePoint{third(b.x, a.x), third(b.y, a.y)}};
 }
 
+size_t PatchMesh::bytesBeyond(const PatchMesh& other) const {
+    const auto ofVector = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+    const auto ofSpline = [&](const PatchSpline& spline) {
+        return ofVector(spline.sites) + ofVector(spline.centres) + ofVector(spline.coefficients);
+    };
+    return mConnectivity.bytesBeyond(other.mConnectivity) + mPositions.bytesBeyond(other.mPositions) +
+           mCurves.bytesBeyond(other.mCurves) + mInteriors.bytesBeyond(other.mInteriors) +
+           mSplines.bytesBeyond(other.mSplines, ofSpline) + mAttributes.bytesBeyond(other.mAttributes) + ofVector(mSmoothJoins);
+}
+
 BezierCurve toPixels(const std::array<LatticePoint, 4>& c) {
     return {{toPixels(c[0]), toPixels(c[1]), toPixels(c[2]), toPixels(c[3])}};
 }
@@ -31,7 +41,8 @@ PatchMesh::PatchMesh(int width, int height, int channels, HalfedgeMesh connectiv
       mPositions(mConnectivity.vertexCapacity()),
       mCurves(mConnectivity.edgeCapacity()),
       mInteriors(mConnectivity.faceCapacity()),
-      mSplines(mConnectivity.faceCapacity()) {
+      mSplines(mConnectivity.faceCapacity()),
+      mAttributes(mConnectivity.faceCapacity()) {
     TESSERA_CHECK(positions.size() == mConnectivity.vertexCapacity());
     TESSERA_CHECK(channels == 3 || channels == 4);
     for (uint32_t v = 0; v < positions.size(); ++v) setPosition(VertexId(v), positions[v]);
@@ -46,6 +57,18 @@ PatchMesh::PatchMesh(int width, int height, int channels, HalfedgeMesh connectiv
         setInterior(p, toLattice(defaultInterior(toPixels(controlPoints(p)))));
         setSpline(p, constantSpline({black.data(), size_t(channels)}));
     });
+}
+
+void PatchMesh::setConnectivity(HalfedgeMesh connectivity) {
+    mConnectivity = std::move(connectivity);
+    const auto grow = [](auto& elements, size_t count) {
+        if (elements.size() < count) elements.resize(count);
+    };
+    grow(mPositions, mConnectivity.vertexCapacity());
+    grow(mCurves, mConnectivity.edgeCapacity());
+    grow(mInteriors, mConnectivity.faceCapacity());
+    grow(mSplines, mConnectivity.faceCapacity());
+    grow(mAttributes, mConnectivity.faceCapacity());
 }
 
 std::array<LatticePoint, 4> PatchMesh::controlPoints(HalfedgeId h) const {

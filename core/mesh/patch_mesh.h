@@ -26,6 +26,8 @@ struct EdgeCurve {
     LatticePoint c2;
     bool feature = false;              // a colour discontinuity lies on it
     std::array<float, 2> blurSigma{};  // px, at the curve's two ends; 0 is a hard edge
+    // An edit left a jump of colours here: no feature, and no seam that should be narrow.
+    bool colourBreak = false;
 
     bool operator==(const EdgeCurve&) const = default;
 };
@@ -37,6 +39,15 @@ struct SmoothJoin {
     EdgeId second;
 
     auto operator<=>(const SmoothJoin&) const = default;
+};
+
+// What an editor knows of a patch.
+struct PatchAttributes {
+    bool hidden = false;  // not drawn where people work; pictures of the mesh have it
+    bool locked = false;  // tools neither select nor change it
+    bool cutOut = false;  // transparent in every picture of the mesh
+
+    bool operator==(const PatchAttributes&) const = default;
 };
 
 class PatchMesh {
@@ -61,17 +72,19 @@ class PatchMesh {
     const EdgeCurve& curve(EdgeId e) const { return mCurves[e.index]; }
     LatticePoint interior(PatchId p) const { return mInteriors[p.index]; }
     const PatchSpline& spline(PatchId p) const { return mSplines[p.index]; }
+    const PatchAttributes& attributes(PatchId p) const { return mAttributes[p.index]; }
     const std::vector<SmoothJoin>& smoothJoins() const { return mSmoothJoins; }
 
-    // Another connectivity over the same elements (after a flip, say). The caller keeps the geometry
-    // consistent.
-    void setConnectivity(HalfedgeMesh connectivity) { mConnectivity = std::move(connectivity); }
+    // Another connectivity over the same elements (after a flip, say), and new ones (after a split), whose
+    // geometry, colours and attributes are default values. The caller keeps the geometry consistent.
+    void setConnectivity(HalfedgeMesh connectivity);
     // The values of the splines stay as they are and mean something else.
     void setColourBasis(ColourBasis basis) { mColourBasis = basis; }
     void setPosition(VertexId v, LatticePoint p) { mPositions.edit(v.index) = p; }
     void setCurve(EdgeId e, const EdgeCurve& curve) { mCurves.edit(e.index) = curve; }
     void setInterior(PatchId p, LatticePoint point) { mInteriors.edit(p.index) = point; }
     void setSpline(PatchId p, PatchSpline spline) { mSplines.edit(p.index) = std::move(spline); }
+    void setAttributes(PatchId p, const PatchAttributes& a) { mAttributes.edit(p.index) = a; }
     void setSmoothJoins(std::vector<SmoothJoin> joins) { mSmoothJoins = std::move(joins); }
 
     // The four control points of a halfedge's curve, from its origin.
@@ -80,6 +93,9 @@ class PatchMesh {
     LatticeTriangle controlPoints(PatchId p) const;
     // Sets the inner control points of a halfedge's curve, given from its origin.
     void setInnerControlPoints(HalfedgeId h, LatticePoint c1, LatticePoint c2);
+
+    // The memory that this mesh takes and does not share with `other`, in bytes.
+    size_t bytesBeyond(const PatchMesh& other) const;
 
     // Each live element, in order of its id.
     template <class Visit>
@@ -108,6 +124,7 @@ class PatchMesh {
     PagedArray<EdgeCurve> mCurves;
     PagedArray<LatticePoint> mInteriors;
     PagedArray<PatchSpline, 6> mSplines;
+    PagedArray<PatchAttributes> mAttributes;
     std::vector<SmoothJoin> mSmoothJoins;
 };
 

@@ -84,6 +84,18 @@ double evaluateSpline(const PatchSpline& spline, int c, glm::dvec2 at) {
     return sum;
 }
 
+glm::dvec2 splineGradient(const PatchSpline& spline, int c, glm::dvec2 at) {
+    const float* k = spline.coefficients.data() + spline.offset(c);
+    glm::dvec2 sum{double(k[1]), double(k[2])};
+    for (int i = 0; i < spline.terms[size_t(c)]; ++i) {
+        const glm::dvec2 d = at - spline.centre(i);
+        const double q = d.x * d.x + d.y * d.y;
+        // phi = q log(q) / 2, so grad phi = (log q + 1) d.
+        if (q > 0) sum += double(k[3 + i]) * (std::log(q) + 1) * d;
+    }
+    return sum;
+}
+
 NodalBasis nodalBasis(std::span<const glm::dvec2> centres) {
     const auto n = Eigen::Index(centres.size());
     TESSERA_CHECK(n >= 3);

@@ -68,6 +68,9 @@ PatchSpline constantSpline(std::span<const float> colour);
 // Channel c at a point of the parametric domain, in double: the readable twin of evaluateSplines.
 double evaluateSpline(const PatchSpline& spline, int c, glm::dvec2 at);
 
+// Its derivatives along the domain's axes; at a centre those of the other terms.
+glm::dvec2 splineGradient(const PatchSpline& spline, int c, glm::dvec2 at);
+
 // All channels at `count` points of the domain: out[c][i]. Uses the widest vector instructions that the
 // machine has; phi is accurate to 1e-6 on the domain. Thread-safe. (tps_simd.cpp)
 void evaluateSplines(const PatchSpline& spline, int channels, const float* x, const float* y, size_t count,

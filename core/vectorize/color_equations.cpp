@@ -4,8 +4,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "core/base/parallel.h"
+#include "core/mesh/patch_query.h"
 #include "core/vectorize/patch_pixels.h"
 
 namespace tessera {
@@ -53,11 +55,14 @@ class EquationBuilder {
         m.patches.resize(choices.size());
         m.bases.reserve(choices.size());
         static constexpr uint8_t kCorners[] = {0, 1, 2};
+        static const NewtonBasis kNone(kCorners);
         for (uint32_t p = 0; p < choices.size(); ++p) {
-            const bool alive = mesh.connectivity().alive(PatchId(p));
-            m.bases.emplace_back(alive ? std::span<const uint8_t>(choices[p].sites)
-                                       : std::span<const uint8_t>(kCorners));
-            if (!alive) continue;
+            if (!mesh.connectivity().alive(PatchId(p)) || choices[p].sites.empty()) {
+                m.bases.push_back(kNone);
+                continue;
+            }
+            m.bases.emplace_back(choices[p].sites);
+            reach(controlBounds(mesh, PatchId(p)));
             auto& patch = m.patches[p];
             patch.count = int(choices[p].sites.size());
             const auto count = size_t(patch.count);
@@ -74,6 +79,17 @@ class EquationBuilder {
     ColorEquations m;
 
   private:
+    bool held(uint32_t p) const { return m.patches[p].count == 0; }
+    // How many factors a row has for a patch: its unknowns; of a held one its colours, channel by channel.
+    size_t factorCount(uint32_t p) const { return size_t(held(p) ? mMesh.channels() : m.patches[p].count); }
+    void evaluateFactors(uint32_t p, const float* x, const float* y, size_t count, float* out) const;
+    void evaluateSlopes(uint32_t p, glm::dvec2 at, double* values, double* alongX,
+                                 double* alongY) const;
+    void reach(const Rect& box) {
+        mReach.min = glm::min(mReach.min, box.min);
+        mReach.max = glm::max(mReach.max, box.max);
+    }
+    bool inReach(PatchId p) const;
     void addPatch(PatchId p, const PatchPixels& pixels, Parts& parts);
     void addBlurTerms(PatchId p, const PatchPixels& pixels, const std::vector<uint8_t>& shared, Parts& parts);
     std::vector<uint8_t> findShared(PatchId p, const PatchPixels& pixels);
@@ -87,8 +103,44 @@ class EquationBuilder {
     const Image& mPicture;
     int mSide;
     EdgeBlur mBlur;
+    Rect mReach{glm::dvec2(HUGE_VAL), glm::dvec2(-HUGE_VAL)};  // of the patches that are not held
     std::vector<Parts> mParts;
 };
+
+// out[k * count + i] is function k at point i.
+void EquationBuilder::evaluateFactors(uint32_t p, const float* x, const float* y, size_t count, float* out) const {
+    if (!held(p)) {
+        m.bases[p].evaluate(x, y, count, out, count);
+        return;
+    }
+    float* planes[kMaxChannels] = {};
+    for (size_t c = 0; c < size_t(mMesh.channels()); ++c) planes[c] = out + c * count;
+    evaluateSplines(mMesh.spline(PatchId(p)), mMesh.channels(), x, y, count, planes);
+}
+
+void EquationBuilder::evaluateSlopes(uint32_t p, glm::dvec2 at, double* values, double* alongX,
+                                              double* alongY) const {
+    if (!held(p)) {
+        m.bases[p].evaluateWithDerivatives(at, values, alongX, alongY);
+        return;
+    }
+    const PatchSpline& spline = mMesh.spline(PatchId(p));
+    for (int c = 0; c < mMesh.channels(); ++c) {
+        const glm::dvec2 slope = splineGradient(spline, c, at);
+        values[c] = evaluateSpline(spline, c, at);
+        alongX[c] = slope.x;
+        alongY[c] = slope.y;
+    }
+}
+
+// Whether pixels of a held patch may be those of others too.
+bool EquationBuilder::inReach(PatchId p) const {
+    if (!held(p.index)) return true;
+    constexpr double kMargin = 2;  // px
+    const Rect box = controlBounds(mMesh, p);
+    return box.min.x <= mReach.max.x + kMargin && box.min.y <= mReach.max.y + kMargin &&
+           box.max.x >= mReach.min.x - kMargin && box.max.y >= mReach.min.y - kMargin;
+}
 
 // Pixels that are not the patch's alone.
 std::vector<uint8_t> EquationBuilder::findShared(PatchId p, const PatchPixels& pixels) {
@@ -138,14 +190,15 @@ void EquationBuilder::addBlurTerms(PatchId p, const PatchPixels& pixels, const s
             x[i] = feet[first + i].at.x;
             y[i] = feet[first + i].at.y;
         }
-        const int functions = m.patches[q].count;
+        const auto functions = Eigen::Index(factorCount(q));
         Rows values(functions, Eigen::Index(n));
-        m.bases[q].evaluate(x.data(), y.data(), n, values.data(), n);
+        evaluateFactors(q, x.data(), y.data(), n, values.data());
         float* row = nullptr;
         for (size_t i = 0; i < n; ++i) {
             if (i == 0 || feet[first + i].pixel != feet[first + i - 1].pixel)
                 row = parts.add(feet[first + i].pixel, q, size_t(functions));
-            for (int k = 0; k < functions; ++k) row[k] += feet[first + i].weight * values(k, Eigen::Index(i));
+            for (Eigen::Index k = 0; k < functions; ++k)
+                row[k] += feet[first + i].weight * values(k, Eigen::Index(i));
         }
     }
 }
@@ -154,9 +207,10 @@ void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& part
     auto& patch = m.patches[p.index];
     const size_t samples = pixels.x.size();
     const auto count = Eigen::Index(pixels.pixels.size());
-    Rows values(patch.count, Eigen::Index(samples));
-    m.bases[p.index].evaluate(pixels.x.data(), pixels.y.data(), samples, values.data(), samples);
-    Eigen::MatrixXf means = Eigen::MatrixXf::Zero(patch.count, count);
+    const auto functions = Eigen::Index(factorCount(p.index));
+    Rows values(functions, Eigen::Index(samples));
+    evaluateFactors(p.index, pixels.x.data(), pixels.y.data(), samples, values.data());
+    Eigen::MatrixXf means = Eigen::MatrixXf::Zero(functions, count);
     for (size_t i = 0; i < samples; ++i) means.col(pixels.pixelOf[i]) += values.col(Eigen::Index(i));
     means *= 1 / float(mSide * mSide);
 
@@ -167,13 +221,15 @@ void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& part
         const auto& pixel = pixels.pixels[size_t(k)];
         weight += double(pixel.coverage);
         if (shared[size_t(k)]) {
-            float* row = parts.add(pixel.index, p.index, size_t(patch.count));
-            for (int i = 0; i < patch.count; ++i) row[i] = means(i, k);
+            float* row = parts.add(pixel.index, p.index, size_t(functions));
+            for (Eigen::Index i = 0; i < functions; ++i) row[i] = means(i, k);
             means.col(k).setZero();
         } else {
             for (int c = 0; c < mMesh.channels(); ++c) targets(k, c) = mPicture.plane(c)[pixel.index];
         }
     }
+    if (mBlur.inReach(p)) addBlurTerms(p, pixels, shared, parts);
+    if (held(p.index)) return;
     Eigen::MatrixXf gram = Eigen::MatrixXf::Zero(patch.count, patch.count);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(means);
     gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
@@ -184,7 +240,6 @@ void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& part
         own(k, k) += kRidge * area + kBending / area * m.bases[p.index].energy(k);
     Eigen::Map<Eigen::MatrixXd>(patch.moments.data(), patch.count, mMesh.channels()) =
         (means * targets).cast<double>();
-    if (mBlur.inReach(p)) addBlurTerms(p, pixels, shared, parts);
 }
 
 void EquationBuilder::addPixels(Progress& progress) {
@@ -194,6 +249,7 @@ void EquationBuilder::addPixels(Progress& progress) {
     parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
         PatchPixels pixels;
         for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
+            if (!inReach(sampler.patches()[i])) continue;
             sampler.sample(i, pixels);
             if (pixels.pixels.empty()) continue;
             addPatch(sampler.patches()[i], pixels, mParts[first + i]);
@@ -214,7 +270,7 @@ void EquationBuilder::addSide(HalfedgeId h, size_t samples, uint32_t firstRow, d
     const BezierTriangle t = toPixels(mMesh.controlPoints(p));
     const BezierCurve curve = toPixels(mMesh.controlPoints(HalfedgeMesh::halfedge(HalfedgeMesh::edge(h))));
     const double spacing = curve.length() / double(samples - 1);
-    const auto n = size_t(m.patches[p.index].count);
+    const size_t n = factorCount(p.index);
     std::vector<double> value(n), dx(n), dy(n);
     const uint32_t stride = weights.gradient > 0 ? 2 : 1;
     for (uint32_t i = 0; i < samples; ++i) {
@@ -225,7 +281,7 @@ void EquationBuilder::addSide(HalfedgeId h, size_t samples, uint32_t firstRow, d
         Barycentric b(0);
         b[side] = 1 - s;
         b[(side + 1) % 3] = s;
-        m.bases[p.index].evaluateWithDerivatives(domainPoint(b), value.data(), dx.data(), dy.data());
+        evaluateSlopes(p.index, domainPoint(b), value.data(), dx.data(), dy.data());
         float* row = parts.add(firstRow + stride * i, p.index, n);
         for (size_t k = 0; k < n; ++k) row[k] = float(w0 * value[k]);
         if (stride == 1) continue;
@@ -256,8 +312,9 @@ void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
     std::vector<Seam> seams;
     uint32_t rows = m.pixelRows;
     mMesh.forEachEdge([&](EdgeId e) {
-        if (mesh.onBorder(e) || mMesh.curve(e).feature) return;
+        if (mesh.onBorder(e) || mMesh.curve(e).feature || mMesh.curve(e).colourBreak) return;
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
+        if (held(mesh.face(h).index) && held(mesh.face(HalfedgeMesh::twin(h)).index)) return;
         const double length = toPixels(mMesh.controlPoints(h)).length();
         const auto samples = size_t(std::clamp(int(length * kSamplesPerPx), kLeast, kMost));
         seams.push_back({h, samples, rows});
@@ -315,14 +372,17 @@ void EquationBuilder::finish(const Progress& progress) {
             ids = std::max(ids, *std::max_element(chunk.ids.begin(), chunk.ids.end()) + 1);
             chunks[chunk.patch].push_back(&chunk);
         }
-    number.assign(ids, 0);
+    // Rows of held patches alone say nothing.
+    constexpr uint32_t kNoRow = ~uint32_t{0};
+    number.assign(ids, kNoRow);
     for (const Parts& parts : mParts)
         for (const Parts::Chunk& chunk : parts.chunks)
-            for (const uint32_t id : chunk.ids) number[id] = 1;
+            if (!held(chunk.patch))
+                for (const uint32_t id : chunk.ids) number[id] = 0;
     uint32_t rows = 0;
     std::vector<uint32_t> pixelOfRow;
     for (uint32_t id = 0; id < ids; ++id) {
-        if (!number[id]) continue;
+        if (number[id] == kNoRow) continue;
         number[id] = rows++;
         pixelOfRow.push_back(id);
     }
@@ -332,13 +392,19 @@ void EquationBuilder::finish(const Progress& progress) {
         if (pixelOfRow[row] < m.pixelRows)
             for (int c = 0; c < mMesh.channels(); ++c)
                 m.targets[size_t(c) * rows + row] = mPicture.plane(c)[pixelOfRow[row]];
+    for (const Parts& parts : mParts)
+        for (const Parts::Chunk& chunk : parts.chunks)
+            for (size_t i = 0; held(chunk.patch) && i < chunk.ids.size(); ++i)
+                for (size_t c = 0; number[chunk.ids[i]] != kNoRow && c < size_t(mMesh.channels()); ++c)
+                    m.targets[c * rows + number[chunk.ids[i]]] -=
+                        chunk.factors[i * size_t(mMesh.channels()) + c];
     for (ColorEquations::Seam& seam : m.seams) seam.firstRow = number[seam.firstRow];
     m.pixelRows =
         uint32_t(std::lower_bound(pixelOfRow.begin(), pixelOfRow.end(), m.pixelRows) - pixelOfRow.begin());
 
     parallelFor(m.patches.size(), 16, [&](size_t begin, size_t end) {
         for (size_t p = begin; p < end && !progress.stopRequested(); ++p)
-            gather(m.patches[p], chunks[p], number);
+            if (!held(uint32_t(p))) gather(m.patches[p], chunks[p], number);
     });
     m.firstEntry.assign(size_t(rows) + 1, 0);
     for (const auto& patch : m.patches)

@@ -59,7 +59,8 @@ struct SeamWeights {
     double gradient = 0;  // C1: the same, of the difference a pixel off the edge
 };
 
-// `picture` in the mesh's basis; samplesPerSide^2 samples a pixel. Void where progress says stop.
+// `picture` in the mesh's basis; samplesPerSide^2 samples a pixel. Patches whose choice has no sites are
+// held: they have no unknowns, and the colours that they have count as known. Void where progress says stop.
 ColorEquations buildEquations(const PatchMesh& mesh, const Image& picture,
                               const std::vector<SiteChoice>& choices, const SeamWeights& weights,
                               int samplesPerSide, Progress& progress);

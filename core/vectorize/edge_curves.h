@@ -34,6 +34,10 @@ class EdgeCurveFinder {
     std::vector<EdgeCurve> find(double sigmaPx, double nextSigmaPx, double minLengthPx,
                                 const std::stop_token& stop);
 
+    // The square of the gradient's magnitude at each pixel, in colour units a px, at the scale asked for
+    // last.
+    const std::vector<float>& squaredGradient() const { return mSquare; }
+
     // Variance, in px^2, of all smoothing before a curve's variance is measured but for the picture's own.
     static double smoothingVariance(double sigmaPx);
 

@@ -23,8 +23,8 @@ const std::array kPresets{
     Preset{"draft", 1.3, 0, 30, 1, true},
     Preset{"standard", kUsual.initialSurplus, kUsual.refineRounds, kUsual.termsPerPatch, kUsual.seamPasses,
            false},
-    Preset{"fine", 2, 8, 64, 4, false},
-    Preset{"max", 2.5, 14, 72, 4, false},
+    Preset{"fine", 2, 8, 84, 4, false},
+    Preset{"max", 2.5, 14, 100, 4, false},
 };
 
 const std::string kCurves = "curves", kStraight = "straight";

@@ -126,7 +126,7 @@ void spend(const PatchMesh& mesh, const std::vector<ErrorCurves>& errors, double
 
 }  // namespace
 
-std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, const SiteBudget& budget,
+std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, double termsPerPatch,
                                     Progress& progress) {
     const size_t capacity = mesh.connectivity().faceCapacity();
     std::vector<SiteChoice> choices(capacity);
@@ -138,12 +138,12 @@ std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture,
             sampler.sample(i, pixels);
             if (pixels.pixels.empty()) continue;
             const uint32_t p = sampler.patches()[i].index;
-            const int most = std::clamp(int(pixels.pixels.size()), kCorners, budget.maxTerms);
+            const int most = std::clamp(int(pixels.pixels.size()), kCorners, kCentreSites);
             Pursuit(pixels, picture, most).run(most, choices[p].sites, errors[p]);
         }
     });
     if (progress.stopRequested()) return {};
-    spend(mesh, errors, budget.termsPerPatch * double(mesh.patchCount()), choices);
+    spend(mesh, errors, termsPerPatch * double(mesh.patchCount()), choices);
     mesh.forEachPatch([&](PatchId p) {
         SiteChoice& choice = choices[p.index];
         if (choice.sites.empty()) choice.sites = {0, 1, 2};

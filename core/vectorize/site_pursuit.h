@@ -17,14 +17,10 @@ struct SiteChoice {
     std::array<int, kMaxChannels> terms{};  // factors of each channel, 3 .. sites.size()
 };
 
-struct SiteBudget {
-    double termsPerPatch = 48;  // over all channels, on the average
-    int maxTerms = 40;          // of a channel, and no more than the patch has pixels
-};
-
-// By patch id. `picture` is in the mesh's basis and has hard steps at features. Empty where progress says
-// stop.
-std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, const SiteBudget& budget,
+// By patch id. A channel of a patch has no more terms than there are sites, nor than the patch has pixels;
+// over all channels termsPerPatch on the average, at most. `picture` is in the mesh's basis and has hard
+// steps at features. Empty where progress says stop.
+std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, double termsPerPatch,
                                     Progress& progress);
 
 }  // namespace tessera

@@ -237,6 +237,23 @@ class SeamWeightSearch {
     bool mKnown = false;
 };
 
+// Gives patches that are not held the splines of their factors; how many these are.
+size_t setSplines(PatchMesh& mesh, const ColorEquations& equations,
+                  const std::array<PatchVectors, kMaxChannels>& factors) {
+    size_t terms = 0;
+    mesh.forEachPatch([&](PatchId p) {
+        if (equations.patches[p.index].count == 0) return;
+        std::array<std::span<const double>, kMaxChannels> own;
+        for (int c = 0; c < mesh.channels(); ++c) {
+            const VectorXd& x = factors[size_t(c)][p.index];
+            own[size_t(c)] = {x.data(), size_t(x.size())};
+            terms += own[size_t(c)].size();
+        }
+        mesh.setSpline(p, equations.bases[p.index].spline({own.data(), size_t(mesh.channels())}));
+    });
+    return terms;
+}
+
 }  // namespace
 
 Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vector<SiteChoice>& choices,
@@ -269,20 +286,33 @@ Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vec
     }
     report.figures.push_back({"seam weight", seamWeight});
     mesh.setColourBasis(ColourBasis::Opponent);
-    size_t terms = 0;
-    mesh.forEachPatch([&](PatchId p) {
-        std::array<std::span<const double>, kMaxChannels> own;
-        for (int c = 0; c < mesh.channels(); ++c) {
-            const VectorXd& x = factors[size_t(c)][p.index];
-            own[size_t(c)] = {x.data(), size_t(x.size())};
-            terms += own[size_t(c)].size();
-        }
-        mesh.setSpline(p, equations.bases[p.index].spline({own.data(), size_t(mesh.channels())}));
-    });
+    const size_t terms = setSplines(mesh, equations, factors);
     report.figures.push_back({"terms", double(terms)});
     report.figures.push_back({"shared pixels", double(equations.pixelRows)});
     report.figures.push_back({"iterations", double(iterations)});
     return mesh;
+}
+
+std::vector<PatchId> refitColors(PatchMesh& mesh, const Image& picture,
+                                 const std::vector<SiteChoice>& choices, double seamGradientWeight,
+                                 double seamWeight) {
+    Progress progress;
+    const ColorEquations equations =
+        buildEquations(mesh, picture, choices, {1, seamGradientWeight}, kSamplesPerSide, progress);
+    VectorXf weights = VectorXf::Ones(Eigen::Index(equations.rowCount));
+    weights.tail(weights.size() - equations.pixelRows).setConstant(float(seamWeight));
+    std::array<PatchVectors, kMaxChannels> factors;
+    int iterations = 0;
+    for (int c = 0; c < mesh.channels(); ++c) {
+        ChannelSystem system(equations, choices, weights, c);
+        system.factorize(progress);
+        factors[size_t(c)] = conjugateGradients(system, {}, kTolerance, iterations, progress);
+    }
+    setSplines(mesh, equations, factors);
+    std::vector<PatchId> solved;
+    for (uint32_t p = 0; p < equations.patches.size(); ++p)
+        if (equations.patches[p].count > 0) solved.push_back(PatchId(p));
+    return solved;
 }
 
 }  // namespace tessera

@@ -15,4 +15,10 @@ namespace tessera {
 Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vector<SiteChoice>& choices,
                               const VectorizeSettings& settings, StageReport& report, Progress& progress);
 
+// The same least squares for the patches alone whose choice has sites; the others are held, and seams toward
+// them count as much. `picture` in the mesh's basis. The patches that were solved, by ascending id.
+std::vector<PatchId> refitColors(PatchMesh& mesh, const Image& picture,
+                                 const std::vector<SiteChoice>& choices, double seamGradientWeight,
+                                 double seamWeight);
+
 }  // namespace tessera

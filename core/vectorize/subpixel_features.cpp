@@ -20,7 +20,8 @@ namespace tessera {
 namespace {
 
 constexpr std::array kScalesPx{.7, 1.6, 3.6};
-constexpr double kStepPx = .8;  // between points of a chain
+constexpr size_t kOutlineScale = 1;  // at which features are judged
+constexpr double kStepPx = .8;       // between points of a chain
 constexpr double kBorderPx = 1.5;
 constexpr double kVisible = 4.0 / 255;
 constexpr double kSurfacePx = .92 * kMostBlurPx;  // what is blurred more is a surface's shading
@@ -181,12 +182,14 @@ void extendToBorder(FeatureChain& chain, int width, int height) {
     }
 }
 
-void setImportance(FeatureChain& chain) {
+void setImportance(FeatureChain& chain, const std::vector<float>& squaredGradient, int width, int height) {
     chain.importance = 0;
     const double perPoint = lengthPx(chain) / double(chain.points.size());
     for (const FeaturePoint& p : chain.points) {
-        const double steepness = double(p.contrast) / (1 + double(p.sigma));
-        chain.importance += steepness * steepness * perPoint;
+        const int x = std::clamp(int(p.position.x), 0, width - 1);
+        const int y = std::clamp(int(p.position.y), 0, height - 1);
+        const double square = squaredGradient[size_t(y) * size_t(width) + size_t(x)];
+        chain.importance += square * std::sqrt(square) * perPoint;
     }
 }
 
@@ -223,6 +226,7 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
                                                          const VectorizeSettings& settings,
                                                          StageReport& report, Progress& progress) {
     std::vector<FeatureChain> chains;
+    std::vector<float> outlineGradient;
     if (image.width() < 3 || image.height() < 3) return chains;
     {
         EdgeCurveFinder finder(image);
@@ -230,6 +234,7 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
             const auto curves = finder.find(kScalesPx[s], s + 1 < kScalesPx.size() ? kScalesPx[s + 1] : 0,
                                             .5 * settings.minChainPixels, progress.stopToken());
             for (const EdgeCurve& curve : curves) chains.push_back(resampled(curve, kScalesPx[s]));
+            if (s == kOutlineScale) outlineGradient = finder.squaredGradient();
             if (!progress.step(.2 * double(s + 1))) return stopped();
         }
     }
@@ -250,7 +255,7 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
     chains = dropShort(std::move(chains), settings.minChainPixels);
     eachChain(chains, [&](FeatureChain& chain) {
         chain.corners = findCorners(chain, settings.cornerDegrees);
-        setImportance(chain);
+        setImportance(chain, outlineGradient, image.width(), image.height());
     });
     double length = 0;
     for (const FeatureChain& chain : chains) length += lengthPx(chain);

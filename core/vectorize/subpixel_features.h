@@ -41,7 +41,8 @@ struct FeatureChain {
     bool closed = false;
     std::array<ChainEnd, 2> ends{ChainEnd::Tip, ChainEnd::Tip};
     std::vector<uint32_t> corners;  // points where the direction turns by more than settings.cornerDegrees
-    // The integral of (contrast / (1 + sigma))^2 along the chain: what counts is steep and long.
+    // The integral along the chain of the cube of the gradient at a scale at which fine texture is gone: what
+    // counts is steep from some distance, and long.
     double importance = 0;
 
     bool operator==(const FeatureChain&) const = default;

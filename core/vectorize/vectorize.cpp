@@ -175,7 +175,7 @@ Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& sett
     if (observe.curves) observe.curves(*curved);
 
     auto coloured = run("colours", [&](StageReport& r) -> Result<PatchMesh> {
-        const auto sites = chooseSites(*curved, sharp, {settings.termsPerPatch}, progress);
+        const auto sites = chooseSites(*curved, sharp, settings.termsPerPatch, progress);
         sharp = Image();
         if (!progress.step(.3)) return stopped();
         return solveColors(std::move(*curved), inOpponentBasis(image), sites, settings, r, progress);

@@ -122,7 +122,8 @@ TEST_F(Bench, TellsEveryFigureOfAFolder) {
 TEST_F(Bench, AgreesWithTheOtherCommands) {
     ASSERT_EQ(bench("pictures/disc.png --methods paper --patches 60 --json figures.json"), 0);
     const json row = rowOf(figures()["runs"], "disc");
-    ASSERT_EQ(run("vectorize pictures/disc.png -o a.tessera --method paper --patches 60 --no-embed --quiet"), 0);
+    ASSERT_EQ(run("vectorize pictures/disc.png -o a.tessera --method paper --patches 60 --no-embed --quiet"),
+              0);
     ASSERT_EQ(run("render a.tessera -o a.png --samples 4 --quiet"), 0);
     ASSERT_EQ(run("compare pictures/disc.png a.png --json"), 0);
     EXPECT_NEAR(json::parse(contentOf("out"))["psnr"], row["psnr_decoded"], 1e-9);
@@ -133,7 +134,8 @@ TEST_F(Bench, AgreesWithTheOtherCommands) {
 }
 
 TEST_F(Bench, FindsTheReferenceEdgesInAMeshThatIsCutAlongThem) {
-    ASSERT_EQ(bench("pictures/disc.png --methods paper --patches 120 --json figures.json"), 0) << contentOf("err");
+    ASSERT_EQ(bench("pictures/disc.png --methods paper --patches 120 --json figures.json"), 0)
+        << contentOf("err");
     const json row = rowOf(figures()["runs"], "disc");
     const double around = 2 * M_PI * 20;
     EXPECT_NEAR(row["reference_px"], around, .15 * around);
@@ -145,7 +147,10 @@ TEST_F(Bench, FindsTheReferenceEdgesInAMeshThatIsCutAlongThem) {
 }
 
 TEST_F(Bench, FindsNoneInAMeshWithoutFeatures) {
-    ASSERT_EQ(bench("pictures/disc.png --methods paper --patches 120 --set stage.features=none --json figures.json"), 0);
+    ASSERT_EQ(
+        bench(
+            "pictures/disc.png --methods paper --patches 120 --set stage.features=none --json figures.json"),
+        0);
     const json row = rowOf(figures()["runs"], "disc");
     EXPECT_GT(row["reference_px"], 100);
     EXPECT_EQ(row["recall"], 0);
@@ -154,7 +159,8 @@ TEST_F(Bench, FindsNoneInAMeshWithoutFeatures) {
 }
 
 TEST_F(Bench, MagnifiesPicturesAndShapes) {
-    ASSERT_EQ(bench("pictures --methods paper --patches 60 --times4 --quiet --json figures.json"), 0) << contentOf("err");
+    ASSERT_EQ(bench("pictures --methods paper --patches 60 --times4 --quiet --json figures.json"), 0)
+        << contentOf("err");
     EXPECT_EQ(contentOf("err"), "");
     EXPECT_THAT(contentOf("out"), HasSubstr("over bicubic dB"));
     const json all = figures();
@@ -202,7 +208,15 @@ TEST_F(Bench, StopsWithItsChild) {
               nullptr);
         _exit(127);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    // It listens to signals before it starts its first child; until then a signal just ends it.
+    const std::string children =
+        "/proc/" + std::to_string(child) + "/task/" + std::to_string(child) + "/children";
+    const auto hasChild = [&] {
+        std::string first;
+        return static_cast<bool>(std::ifstream(children) >> first);
+    };
+    for (int i = 0; i < 3000 && !hasChild(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_TRUE(hasChild());
     const auto asked = std::chrono::steady_clock::now();
     kill(child, SIGTERM);
     int status = 0;

@@ -47,7 +47,7 @@ class FittedDocument : public ::testing::Test {
         fromWorking(ColourBasis::Opponent, planes, opponent.planeSize());
         const PatchMesh grid = testing::gridMesh(128, 96, 8, 6);
         auto mesh =
-            solveColors(grid, opponent, chooseSites(grid, opponent, {}, progress), {}, report, progress);
+            solveColors(grid, opponent, chooseSites(grid, opponent, 48, progress), {}, report, progress);
         ASSERT_TRUE(mesh);
         d.mesh = *mesh;
         d.difference.emplace();

@@ -49,7 +49,7 @@ PatchMesh solved(const Image& image, const VectorizeSettings& settings, PatchMes
     StageReport report;
     Progress progress;
     const Image opponent = inOpponent(image);
-    const auto sites = chooseSites(mesh, opponent, {settings.termsPerPatch}, progress);
+    const auto sites = chooseSites(mesh, opponent, settings.termsPerPatch, progress);
     auto result = solveColors(std::move(mesh), opponent, sites, settings, report, progress);
     EXPECT_TRUE(result.has_value());
     return *result;
@@ -138,7 +138,7 @@ TEST(SitePursuit, CentresGoWhereTheDetailIs) {
         return .5 + .4 * std::exp(-(dx * dx + dy * dy) / 8);
     });
     Progress progress;
-    const auto choices = chooseSites(square(), inOpponent(image), {20, 40}, progress);
+    const auto choices = chooseSites(square(), inOpponent(image), 20, progress);
     ASSERT_EQ(choices.size(), 4U);
     EXPECT_GT(choices[3].terms[0], 15);
     EXPECT_LT(choices[1].terms[0], 6);

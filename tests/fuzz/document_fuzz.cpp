@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         tryDocument(rest);
         return 0;
     }
-    static const std::string kTags = "MESHGEOMCURVCOLRSETTREPTSRCEICCPEMBDPREVDIFFnew1";
+    static const std::string kTags = "MESHGEOMCURVCOLRSETTREPTSRCEICCPEMBDPREVDIFFnew1ATTRBRKSSELSFITD";
     std::vector<Chunk> chunks;
     for (size_t at = 0; at + 3 <= rest.size();) {
         const size_t tag = rest[at] % (kTags.size() / 4) * 4;

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "app/commands/replace_mesh.h"
 #include "tests/support/test_meshes.h"
 
 namespace tessera {
@@ -32,13 +31,17 @@ void expectSame(const Document& a, const Document& b) {
 }
 
 struct DocumentSessionTest : ::testing::Test {
+    void replaceBy(Document document) {
+        session.history().push(EditCommand(session, "Vectorize", std::move(document), {.replaced = true}));
+    }
+
     DocumentSession session{documentWith(4, 1), {}, "/folder/old.tessera", {}};
 };
 
 TEST_F(DocumentSessionTest, UndoAndRedoGiveTheSameStates) {
     const Document before = session.document();
     const uint64_t first = session.revision();
-    session.history().push(new ReplaceMesh(session, documentWith(7, 2)));
+    replaceBy(documentWith(7, 2));
     const Document after = session.document();
     const uint64_t second = session.revision();
     EXPECT_NE(first, second);
@@ -55,17 +58,17 @@ TEST_F(DocumentSessionTest, UndoAndRedoGiveTheSameStates) {
 
 TEST_F(DocumentSessionTest, AStateNeverGetsTheRevisionOfAnother) {
     const uint64_t first = session.revision();
-    session.history().push(new ReplaceMesh(session, documentWith(7, 2)));
+    replaceBy(documentWith(7, 2));
     const uint64_t second = session.revision();
     session.history().undo();
-    session.history().push(new ReplaceMesh(session, documentWith(5, 3)));
+    replaceBy(documentWith(5, 3));
     EXPECT_NE(session.revision(), first);
     EXPECT_NE(session.revision(), second);
 }
 
 TEST_F(DocumentSessionTest, ModifiedMeansNotTheSavedState) {
     EXPECT_FALSE(session.modified());
-    session.history().push(new ReplaceMesh(session, documentWith(7, 2)));
+    replaceBy(documentWith(7, 2));
     EXPECT_TRUE(session.modified());
     session.history().undo();
     EXPECT_FALSE(session.modified());
@@ -79,9 +82,9 @@ TEST_F(DocumentSessionTest, ModifiedMeansNotTheSavedState) {
 }
 
 TEST_F(DocumentSessionTest, WhatChangedWhileItWasSavedStaysModified) {
-    session.history().push(new ReplaceMesh(session, documentWith(7, 2)));
+    replaceBy(documentWith(7, 2));
     const uint64_t snapshot = session.revision();
-    session.history().push(new ReplaceMesh(session, documentWith(5, 3)));
+    replaceBy(documentWith(5, 3));
     session.markSaved(snapshot, "/folder/new.tessera", .001);
     EXPECT_TRUE(session.modified());
     EXPECT_FALSE(session.document().colourStep.has_value());
@@ -92,8 +95,8 @@ TEST_F(DocumentSessionTest, WhatChangedWhileItWasSavedStaysModified) {
 TEST_F(DocumentSessionTest, OneSignalForOneStep) {
     int meshChanges = 0;
     QObject::connect(&session, &DocumentSession::changed,
-                     [&](const Change& change) { meshChanges += change.mesh ? 1 : 0; });
-    session.history().push(new ReplaceMesh(session, documentWith(7, 2)));
+                     [&](const Change& change) { meshChanges += change.mesh() ? 1 : 0; });
+    replaceBy(documentWith(7, 2));
     EXPECT_EQ(meshChanges, 1);
     session.history().undo();
     EXPECT_EQ(meshChanges, 2);

@@ -1,0 +1,42 @@
+// The one undoable command: another state of the document, swapped in and out.
+#pragma once
+
+#include <QString>
+#include <cstddef>
+#include <cstdint>
+
+#include "app/change.h"
+#include "core/document/document.h"
+
+namespace tessera {
+
+class DocumentSession;
+
+// Holds the state of the document that is not the current one and exchanges the two, so that undo and redo
+// are one operation and undo gives back the very same value. Documents share pages of the mesh and all else
+// that is large: a command costs what differs.
+class EditCommand {
+  public:
+    // `after` takes the place of the session's document at the first swap(), which announces `change`, and so
+    // does each later one. The session outlives its commands.
+    EditCommand(DocumentSession& session, QString text, Document after, Change change);
+
+    const QString& text() const { return mText; }
+    // The revision of the state that is held.
+    uint64_t otherRevision() const { return mOtherRevision; }
+    // What the held state costs beyond the current one, in bytes.
+    size_t bytes() const { return mDone ? mBytesBefore : mBytesAfter; }
+    void swap();
+
+  private:
+    DocumentSession& mSession;
+    QString mText;
+    Document mOther;
+    uint64_t mOtherRevision;
+    Change mChange;
+    size_t mBytesBefore;  // of the state before that the state after does not share
+    size_t mBytesAfter;   // and the other way round
+    bool mDone = false;
+};
+
+}  // namespace tessera

@@ -1,0 +1,101 @@
+// See selection_actions.h.
+#include "app/selection_actions.h"
+
+#include <algorithm>
+
+#include "app/edit_session.h"
+
+namespace tessera {
+
+namespace {
+
+const NamedSelection* findStored(const Document& document, const QString& name) {
+    const auto found = std::find_if(document.selections.begin(), document.selections.end(),
+                                    [&](const NamedSelection& s) { return s.name == name.toStdString(); });
+    return found == document.selections.end() ? nullptr : &*found;
+}
+
+void editStored(DocumentSession& session, const QString& text,
+                const std::function<void(std::vector<NamedSelection>&)>& edit) {
+    applyToDocument(session, text, {.selections = true},
+                    [&](Document& document) { edit(document.selections); });
+}
+
+PatchSet selectableOf(const PatchMesh& mesh, PatchSet set) {
+    set = alive(mesh, set);
+    std::erase_if(set, [&](PatchId p) { return !selectable(mesh, p); });
+    return set;
+}
+
+}  // namespace
+
+void selectAll(DocumentSession& session) {
+    session.selection().setPatches(allSelectable(session.document().mesh));
+}
+
+void selectNone(DocumentSession& session) {
+    session.selection().clear();
+}
+
+void invertSelection(DocumentSession& session) {
+    session.selection().setPatches(inverted(session.document().mesh, session.selection().patches()));
+}
+
+void growSelection(DocumentSession& session) {
+    session.selection().setPatches(grown(session.document().mesh, session.selection().patches()));
+}
+
+void shrinkSelection(DocumentSession& session) {
+    session.selection().setPatches(shrunk(session.document().mesh, session.selection().patches()));
+}
+
+void selectSimilar(DocumentSession& session, const WandOptions& options) {
+    const PatchMesh& mesh = session.document().mesh;
+    const PatchSet seeds = session.selection().patches();
+    PatchSet found;
+    for (const PatchId seed : seeds)
+        if (!contains(found, seed)) found = united(found, wand(mesh, session.colours(), seed, options));
+    session.selection().setPatches(united(seeds, found));
+}
+
+void storeSelection(DocumentSession& session, const QString& name) {
+    const PatchSet& patches = session.selection().patches();
+    if (name.isEmpty() || patches.empty()) return;
+    editStored(session, QObject::tr("Store Selection"), [&](std::vector<NamedSelection>& stored) {
+        const NamedSelection selection{name.toStdString(), patches};
+        const auto old = std::find_if(stored.begin(), stored.end(), [&](const NamedSelection& s) {
+            return s.name == selection.name;
+        });
+        if (old != stored.end())
+            *old = selection;
+        else
+            stored.push_back(selection);
+    });
+}
+
+void recallSelection(DocumentSession& session, const QString& name, SelectMode mode) {
+    const NamedSelection* stored = findStored(session.document(), name);
+    if (!stored) return;
+    const PatchSet found = selectableOf(session.document().mesh, stored->patches);
+    session.selection().setPatches(combined(session.selection().patches(), found, mode));
+}
+
+void removeStoredSelection(DocumentSession& session, const QString& name) {
+    if (!findStored(session.document(), name)) return;
+    editStored(session, QObject::tr("Remove Stored Selection"), [&](std::vector<NamedSelection>& stored) {
+        std::erase_if(stored, [&](const NamedSelection& s) { return s.name == name.toStdString(); });
+    });
+}
+
+bool renameStoredSelection(DocumentSession& session, const QString& from, const QString& to) {
+    if (to.isEmpty() || !findStored(session.document(), from)) return false;
+    if (from == to) return true;
+    if (findStored(session.document(), to)) return false;
+    editStored(session, QObject::tr("Rename Stored Selection"), [&](std::vector<NamedSelection>& stored) {
+        for (NamedSelection& s : stored)
+            if (s.name == from.toStdString()) s.name = to.toStdString();
+    });
+    return true;
+}
+
+}  // namespace tessera

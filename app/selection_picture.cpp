@@ -1,0 +1,66 @@
+// See selection_picture.h.
+#include "app/selection_picture.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+
+#include "app/picture_pyramid.h"
+#include "core/base/parallel.h"
+#include "core/export/rasterize.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr int kSide = 2;  // samples a pixel, along each axis
+
+// The pixels that the patches' boxes meet.
+View pixelsOf(const PatchMesh& mesh, const PatchSet& set) {
+    Rect box = controlBounds(mesh, set.front());
+    for (const PatchId p : set) {
+        const Rect bounds = controlBounds(mesh, p);
+        box = {glm::min(box.min, bounds.min), glm::max(box.max, bounds.max)};
+    }
+    const glm::dvec2 lo = glm::max(glm::floor(box.min), glm::dvec2(0));
+    const glm::dvec2 hi = glm::min(glm::ceil(box.max), glm::dvec2(mesh.width(), mesh.height()));
+    return {.origin = lo, .scale = {1, 1}, .width = int(hi.x - lo.x), .height = int(hi.y - lo.y)};
+}
+
+// The mean of the samples that are the set's, the others counted as transparent.
+Image averaged(const Image& samples, const std::vector<PixelOwner>& owners,
+               const std::vector<uint8_t>& member, const View& view) {
+    Image result(view.width, view.height, 4);
+    parallelFor(size_t(view.height), 8, [&](size_t begin, size_t end) {
+        for (int y = int(begin); y < int(end); ++y)
+            for (int i = 0; i < view.width * kSide * kSide; ++i) {
+                const int x = i / (kSide * kSide), sample = i % (kSide * kSide);
+                const int sx = x * kSide + sample % kSide, sy = y * kSide + sample / kSide;
+                const PatchId owner = owners[size_t(sy) * size_t(samples.width()) + size_t(sx)].patch;
+                if (!owner.valid() || !member[owner.index]) continue;
+                for (int c = 0; c < 4; ++c) {
+                    const float value = c < samples.channels() ? samples.at(sx, sy, c) : 1;
+                    result.at(x, y, c) += value / (kSide * kSide);
+                }
+            }
+    });
+    return result;
+}
+
+}  // namespace
+
+QImage selectionPicture(const DocumentSession& session) {
+    if (!session.hasMesh()) return {};
+    const PatchMesh& mesh = session.document().mesh;
+    const PatchSet& set = session.selection().patches();
+    if (set.empty())
+        return toQImage(rasterize(mesh, wholePicture(mesh, {1, 1}), {.samples = kSide * kSide}).value());
+    const View view = pixelsOf(mesh, set);
+    View fine = view;
+    fine.scale *= kSide;
+    fine.width *= kSide;
+    fine.height *= kSide;
+    const Image samples = rasterize(mesh, fine).value();
+    return toQImage(averaged(samples, locatePixels(mesh, fine), membership(mesh, set), view));
+}
+
+}  // namespace tessera

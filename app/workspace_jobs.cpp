@@ -1,0 +1,161 @@
+// The half of the workspace that works on the open documents: vectorizing, saving, exporting, and the list of
+// jobs.
+#include <QFileInfo>
+#include <algorithm>
+#include <utility>
+
+#include "app/jobs/save_job.h"
+#include "app/workspace.h"
+
+namespace tessera {
+
+bool Workspace::canVectorize() const {
+    return mCurrent && mCurrent->photo().image && !running(JobKind::Vectorize);
+}
+
+void Workspace::vectorize(const VectorizeSettings& settings) {
+    if (!canVectorize()) return;
+    const QPointer<DocumentSession> session = mCurrent;
+    const uint64_t revision = mCurrent->revision();
+    Job* job = startVectorizeJob(
+        this, mCurrent->displayName(), mCurrent->photo().image, settings,
+        [this, session, revision, settings](Result<Vectorized> vectorized) {
+            if (!session) return;
+            if (!vectorized) return report(vectorized.error());
+            session->whenIdle([this, session, revision, settings, result = std::move(*vectorized)] {
+                applyVectorized(*session, revision, settings, result);
+            });
+        });
+    track(job, mCurrent);
+}
+
+void Workspace::applyVectorized(DocumentSession& session, uint64_t revision,
+                                const VectorizeSettings& settings, Vectorized vectorized) {
+    Document after = session.document();
+    const bool dropped = !after.selections.empty();
+    after.mesh = std::move(vectorized.result.mesh);
+    after.markEdited();
+    after.fitted.reset();
+    after.selections.clear();
+    after.colourStep.reset();
+    after.settings = settings;
+    after.report = std::move(vectorized.result.report);
+    after.difference = vectorized.difference;
+    QString remarks = asSentence(after.report.shortfall);
+    if (dropped)
+        remarks = (remarks + ' ' + tr("The stored selections belonged to the patches before and are gone."))
+                      .trimmed();
+    const QPointer<DocumentSession> target = &session;
+    const auto apply = [target, after = std::move(after), dropped] {
+        if (!target) return;
+        target->whenIdle([target, after, dropped] {
+            const Change change{.replaced = true, .selections = dropped};
+            target->history().push(EditCommand(*target, tr("Vectorize"), after, change));
+        });
+    };
+    if (session.revision() != revision) {
+        emit said({.kind = Message::Kind::Info,
+                   .text = tr("The document has changed since this vectorization was started."),
+                   .actionText = tr("Use It Anyway"),
+                   .action = apply});
+        return;
+    }
+    apply();
+    if (!remarks.isEmpty()) emit said({.kind = Message::Kind::Info, .text = remarks});
+}
+
+void Workspace::save(const QString& path, bool embedPhoto, std::function<void()> then) {
+    if (mCurrent) save(mCurrent, path, embedPhoto, std::move(then));
+}
+
+void Workspace::save(DocumentSession* session, const QString& path, bool embedPhoto,
+                     std::function<void()> then) {
+    if (!session->hasMesh()) return;
+    session->whenIdle([this, session, path, embedPhoto, then = std::move(then)] {
+        Job* const job = find(JobKind::Save, session);
+        if (!job) return startSave(*session, path, embedPhoto, then);
+        // The one that runs may hold an older state: look again when it has ended.
+        const QPointer<DocumentSession> target = session;
+        connect(job, &Job::finished, this, [this, target, path, embedPhoto, then] {
+            if (!target) return;
+            if (target->modified() || target->path() != path) return save(target, path, embedPhoto, then);
+            if (then) then();
+        });
+    });
+}
+
+void Workspace::startSave(DocumentSession& session, const QString& path, bool embedPhoto,
+                          std::function<void()> then) {
+    Document snapshot = session.document();
+    if (!embedPhoto)
+        snapshot.embeddedSource.reset();
+    else if (session.photo().bytes)
+        snapshot.embeddedSource = session.photo().bytes;
+    const QPointer<DocumentSession> target = &session;
+    const uint64_t revision = session.revision();
+    Job* job = startSaveJob(this, std::move(snapshot), path,
+                            [this, target, revision, path, then = std::move(then)](Result<Saved> written) {
+                                if (!written) return report(written.error());
+                                emit fileUsed(path);
+                                if (target) {
+                                    target->markSaved(revision, path, written->colourStep);
+                                    emit saved(target);
+                                }
+                                if (then) then();
+                            });
+    track(job, &session);
+}
+
+void Workspace::exportPicture(const ExportRequest& request) {
+    if (!mCurrent || !mCurrent->hasMesh() || running(JobKind::Export)) return;
+    const QPointer<DocumentSession> target = mCurrent;
+    mCurrent->whenIdle([this, target, request] {
+        Job* job = startExportJob(
+            this, target->document().mesh, request, [this, path = request.path](Result<Exported> exported) {
+                if (!exported) return report(exported.error());
+                emit said({.kind = Message::Kind::Info,
+                           .text = tr("Exported “%1”.").arg(QFileInfo(path).fileName())});
+            });
+        track(job, target);
+    });
+}
+
+Job* Workspace::find(JobKind kind, const DocumentSession* session) const {
+    const auto found = std::find_if(mJobs.begin(), mJobs.end(), [&](const RunningJob& running) {
+        return running.job->kind() == kind && (kind == JobKind::Open || running.session == session);
+    });
+    return found == mJobs.end() ? nullptr : found->job;
+}
+
+void Workspace::cancel() {
+    if (Job* job = currentJob(); job && job->kind() != JobKind::Save) job->stop();
+    emit jobChanged();
+}
+
+void Workspace::track(Job* job, const DocumentSession* session) {
+    mJobs.append({job, session});
+    connect(job, &Job::progressed, this, &Workspace::jobChanged);
+    connect(job, &Job::finished, this, [this, job] {
+        mJobs.removeIf([&](const RunningJob& running) { return running.job == job; });
+        emit jobChanged();
+    });
+    emit jobChanged();
+}
+
+void Workspace::stopAll(JobKind kind, const DocumentSession* session) {
+    const QList<RunningJob> jobs = mJobs;
+    for (const RunningJob& running : jobs) {
+        if (running.job->kind() != kind || running.session != session) continue;
+        mJobs.removeIf([&](const RunningJob& r) { return r.job == running.job; });
+        running.job->disconnect(this);
+        delete running.job;  // drops its result too
+    }
+    emit jobChanged();
+}
+
+void Workspace::report(const Error& error) {
+    if (error.code == ErrorCode::Stopped) return;
+    emit said({.kind = Message::Kind::Error, .text = asSentence(error.message)});
+}
+
+}  // namespace tessera

@@ -1,0 +1,35 @@
+// The distance from points to many segments, as far as a given reach.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/mesh/patch_mesh.h"
+
+namespace tessera {
+
+using LineSegment = std::pair<glm::dvec2, glm::dvec2>;
+
+// Curves as segments, fine enough to take them for the curves (within a fiftieth of a px or so).
+std::vector<LineSegment> segmentsOf(const PatchMesh& mesh, std::span<const EdgeId> edges);
+
+class DistanceGrid {
+  public:
+    DistanceGrid(std::vector<LineSegment> segments, double reach);
+
+    // To the nearest segment; `reach` where that is farther, and where there are none. Thread-safe.
+    double distance(glm::dvec2 point) const;
+
+  private:
+    std::vector<LineSegment> mSegments;
+    double mReach;
+    glm::dvec2 mOrigin{0};
+    int mColumns = 0, mRows = 0;
+    double mCell = 1;
+    std::vector<uint32_t> mFirst;  // by cell, into mEntries
+    std::vector<uint32_t> mEntries;
+};
+
+}  // namespace tessera

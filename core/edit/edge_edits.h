@@ -1,0 +1,24 @@
+// What is known of edges: whether they are features, and how soft.
+#pragma once
+
+#include <span>
+
+#include "core/base/result.h"
+#include "core/edit/touched.h"
+
+namespace tessera {
+
+// The widest blur that an edit gives, px.
+constexpr double kMostEditedBlurPx = 64;
+
+// Sets the blur of features. Where the edges, in this order, are a path, sigma (px, 0..kMostEditedBlurPx)
+// goes from its value at the start of the first to that at the end of the last, by arc length; else both must
+// be equal. Fails with Usage where an edge is no feature.
+Result<Touched> setBlur(PatchMesh& mesh, std::span<const EdgeId> edges, double sigmaStart, double sigmaEnd);
+
+// Marks edges as features (hard ones) or unmarks them. A feature that is unmarked and has a jump of colours
+// becomes a colour break; joins and blurs of unmarked edges go. Fails with Usage where an edge is on the
+// picture's border.
+Result<Touched> setFeature(PatchMesh& mesh, std::span<const EdgeId> edges, bool feature);
+
+}  // namespace tessera

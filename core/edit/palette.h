@@ -1,0 +1,44 @@
+// The dominant colours of a picture, and how much of each there is in a colour (after Chang, Fried, Liu,
+// DiVerdi and Finkelstein, Palette-based Photo Recoloring, 2015).
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "core/edit/patch_colours.h"
+#include "core/edit/touched.h"
+
+namespace tessera {
+
+struct PaletteEntry {
+    glm::dvec3 colour{0};  // gamma-encoded sRGB
+    double weight = 0;     // share of the picture's area
+    size_t patches = 0;    // nearest to this entry
+};
+
+struct Palette {
+    static constexpr int kLeast = 5, kMost = 16;
+    static constexpr uint8_t kNone = 255;
+
+    std::vector<PaletteEntry> entries;  // by falling weight
+    std::vector<uint8_t> nearest;       // by patch id: its entry; kNone where there is no patch
+    double spread = 0;                  // in OKLab: of the shares
+};
+
+// By k-means in OKLab over the patches' mean colours, weighted by area. `count` is brought into
+// kLeast..kMost; fewer entries where there are fewer colours. The same for the same colours.
+Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count);
+
+// How much of an entry is in a colour, both in OKLab: the shares of all entries are at least 0, 1 in sum, and
+// continuous.
+double paletteShare(std::span<const glm::dvec3> entries, double spread, size_t entry, glm::dvec3 lab);
+
+// The patches nearest to an entry.
+PatchSet patchesOf(const Palette& palette, int entry);
+
+// The entry becomes another colour in the whole picture: each colour goes along by its share of the entry, so
+// that no seam opens.
+Touched recolourPalette(PatchMesh& mesh, const Palette& palette, int entry, glm::dvec3 newColour);
+
+}  // namespace tessera

@@ -1,0 +1,54 @@
+// See refit.h.
+#include "core/edit/refit.h"
+
+#include <algorithm>
+
+#include "core/base/check.h"
+#include "core/edit/spline_edit.h"
+#include "core/mesh/colour_basis.h"
+#include "core/vectorize/solve_colors.h"
+
+namespace tessera {
+
+namespace {
+
+// Seams count this much against a pixel: as much as a solve of the whole picture comes to, or a little more.
+constexpr double kSeamWeight = 8;
+
+// The centres that a patch has; those of splines without sites are made anew.
+SiteChoice choiceOf(const PatchSpline& spline, int channels) {
+    SiteChoice choice;
+    choice.sites = spline.sites.empty() ? usualSites() : spline.sites;
+    for (size_t c = 0; c < size_t(channels); ++c)
+        choice.terms[c] = spline.sites.empty() ? int(choice.sites.size()) : std::max<int>(3, spline.terms[c]);
+    return choice;
+}
+
+Image inBasis(const Image& photo, ColourBasis basis) {
+    Image image = photo;
+    float* planes[3] = {image.plane(0).data(), image.plane(1).data(), image.plane(2).data()};
+    fromWorking(basis, planes, image.planeSize());
+    return image;
+}
+
+}  // namespace
+
+Touched refitColours(PatchMesh& mesh, const Image& photo, const PatchSet& set) {
+    TESSERA_CHECK(photo.width() == mesh.width() && photo.height() == mesh.height() &&
+                  photo.channels() == mesh.channels());
+    const HalfedgeMesh& c = mesh.connectivity();
+    PatchSet patches = alive(mesh, set);
+    for (const PatchId p : alive(mesh, set))
+        for (const HalfedgeId side : c.sides(p))
+            if (c.face(HalfedgeMesh::twin(side)).valid()) patches.push_back(c.face(HalfedgeMesh::twin(side)));
+    patches = editable(mesh, patchSet(std::move(patches)));
+    if (patches.empty()) return {};
+    std::vector<SiteChoice> choices(c.faceCapacity());
+    for (const PatchId p : patches) choices[p.index] = choiceOf(mesh.spline(p), mesh.channels());
+    Touched touched;
+    touched.patches = refitColors(mesh, inBasis(photo, mesh.colourBasis()), choices,
+                                  VectorizeSettings{}.seamGradientWeight, kSeamWeight);
+    return touched;
+}
+
+}  // namespace tessera

@@ -1,0 +1,266 @@
+// See spline_edit.h.
+#include "core/edit/spline_edit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "core/mesh/newton_basis.h"
+
+namespace tessera {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kPolynomials = 3;
+constexpr int kCorners = 3;
+constexpr Eigen::Index kPoints = kCentreSites;
+
+// Shares of channels in channels, row by channel that is made; the last column is a constant.
+using Mix = std::array<std::array<double, kMaxChannels + 1>, kMaxChannels>;
+
+Mix mixOf(int channels, ColourBasis basis, const AffineColour& change) {
+    constexpr double kThird = .57735026918962576451, kHalf = .70710678118654752440,
+                     kSixth = .40824829046386301637;
+    // Rows: the basis' channels from R, G, B. glm fills columns.
+    const glm::dmat3 toBasis = basis == ColourBasis::Rgb ? glm::dmat3(1)
+                                                         : glm::dmat3(kThird, kHalf, kSixth, kThird, 0,
+                                                                      -2 * kSixth, kThird, -kHalf, kSixth);
+    const glm::dmat3 matrix = toBasis * change.matrix * glm::transpose(toBasis);
+    const glm::dvec3 offset = toBasis * change.offset;
+    Mix mix{};
+    // Shares that are rounding would give a channel terms that it does not need.
+    constexpr double kNothing = 1e-9;
+    const auto share = [&](double value) { return std::abs(value) < kNothing ? 0 : value; };
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            mix[size_t(row)][size_t(column)] = share(matrix[column][row]);
+        // Premultiplied: a constant is so much of alpha.
+        mix[size_t(row)][channels == 4 ? 3 : kMaxChannels] = share(offset[row]);
+    }
+    mix[3][3] = 1;
+    return mix;
+}
+
+}  // namespace
+
+AffineColour tinted(glm::dvec3 colour, double strength) {
+    constexpr glm::dvec3 kLuma(.2126, .7152, .0722);
+    AffineColour tint;
+    // colour + (luma of the old - luma of the colour), in each channel.
+    const glm::dmat3 luma(glm::dvec3(kLuma.x), glm::dvec3(kLuma.y), glm::dvec3(kLuma.z));
+    tint.matrix = (1 - strength) * glm::dmat3(1) + strength * luma;
+    tint.offset = strength * (colour - glm::dvec3(glm::dot(kLuma, colour)));
+    return tint;
+}
+
+PatchSpline mixed(const PatchSpline& spline, int channels, ColourBasis basis, const AffineColour& change) {
+    const Mix mix = mixOf(channels, basis, change);
+    PatchSpline result;
+    result.sites = spline.sites;
+    result.centres = spline.centres;
+    result.coefficients.reserve(spline.coefficients.size());
+    for (size_t c = 0; c < size_t(channels); ++c) {
+        int terms = 0;
+        for (size_t from = 0; from < size_t(channels); ++from)
+            if (mix[c][from] != 0) terms = std::max<int>(terms, spline.terms[from]);
+        result.terms[c] = uint8_t(terms);
+        std::array<double, kPolynomials + 255> sum{};
+        sum[0] = mix[c][kMaxChannels];
+        for (size_t from = 0; from < size_t(channels); ++from) {
+            if (mix[c][from] == 0) continue;
+            const float* k = spline.coefficients.data() + spline.offset(int(from));
+            for (size_t i = 0; i < size_t(kPolynomials + spline.terms[from]); ++i)
+                sum[i] += mix[c][from] * double(k[i]);
+        }
+        for (size_t i = 0; i < size_t(kPolynomials + terms); ++i)
+            result.coefficients.push_back(float(sum[i]));
+    }
+    return result;
+}
+
+namespace {
+
+// Points on a side count more: there neighbours must agree.
+const VectorXd& pointWeights() {
+    static const VectorXd weights = [] {
+        constexpr double kOnSide = 4;
+        VectorXd w(kPoints);
+        for (Eigen::Index i = 0; i < kPoints; ++i) {
+            const Barycentric& b = SplineRefit::barycentrics()[size_t(i)];
+            w(i) = std::min({b.x, b.y, b.z}) < 1e-9 ? kOnSide : 1;
+        }
+        return w;
+    }();
+    return weights;
+}
+
+// A basis of functions at the points, with its normal equations.
+struct Factorized {
+    MatrixXd functions;  // points x functions
+    Eigen::LLT<MatrixXd> normal;
+
+    explicit Factorized(MatrixXd values) : functions(std::move(values)) {
+        const MatrixXd weighted = pointWeights().asDiagonal() * functions;
+        MatrixXd gram = functions.transpose() * weighted;
+        gram.diagonal().array() += 1e-9;  // sites may be as many as points
+        normal.compute(gram);
+    }
+    MatrixXd solve(const MatrixXd& targets) const {
+        return normal.solve(functions.transpose() * (pointWeights().asDiagonal() * targets));
+    }
+};
+
+MatrixXd newtonFunctions(const NewtonBasis& basis) {
+    const DomainPoints& points = SplineRefit::points();
+    Eigen::MatrixXf values(kPoints, basis.size());
+    basis.evaluate(points.x.data(), points.y.data(), points.size(), values.data(), points.size());
+    return values.cast<double>();
+}
+
+// The 16 default centres: functions are 1 at one centre and 0 at the others.
+const Factorized& defaultFactorized() {
+    static const Factorized factorized = [] {
+        constexpr Eigen::Index n = kDefaultCentreCount;
+        MatrixXd raw(kPoints, n + kPolynomials);
+        for (Eigen::Index i = 0; i < kPoints; ++i) {
+            const glm::dvec2 at = centreSites()[size_t(i)];
+            raw.row(i).head<kPolynomials>() << 1, at.x, at.y;
+            for (Eigen::Index k = 0; k < n; ++k) {
+                const glm::dvec2 d = at - defaultCentres()[size_t(k)];
+                raw(i, kPolynomials + k) = tpsKernel(d.x * d.x + d.y * d.y);
+            }
+        }
+        const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> nodal(
+            defaultNodalBasis().toCoefficients.data(), n + kPolynomials, n);
+        return Factorized(raw * nodal);
+    }();
+    return factorized;
+}
+
+PatchSpline defaultSpline(const MatrixXd& nodalValues) {
+    const NodalBasis& basis = defaultNodalBasis();
+    const auto n = size_t(basis.n);
+    PatchSpline spline;
+    for (Eigen::Index c = 0; c < nodalValues.cols(); ++c) {
+        spline.terms[size_t(c)] = uint8_t(n);
+        for (size_t row = 0; row < n + kPolynomials; ++row) {
+            double sum = 0;
+            for (size_t k = 0; k < n; ++k)
+                sum += basis.toCoefficients[row * n + k] * nodalValues(Eigen::Index(k), c);
+            spline.coefficients.push_back(float(sum));
+        }
+    }
+    return spline;
+}
+
+// Factors too small to be seen are left out from the end of each channel.
+PatchSpline newtonSpline(const NewtonBasis& basis, const MatrixXd& factors) {
+    constexpr double kUnseen = .02 / 255;
+    std::vector<std::span<const double>> channels;
+    Eigen::Index most = kCorners;
+    for (Eigen::Index c = 0; c < factors.cols(); ++c) {
+        Eigen::Index n = factors.rows();
+        while (n > kCorners && std::abs(factors(n - 1, c)) < kUnseen) --n;
+        channels.emplace_back(factors.col(c).data(), size_t(n));
+        most = std::max(most, n);
+    }
+    PatchSpline spline = basis.spline(channels);
+    spline.sites.resize(most > kCorners ? size_t(most) : 0);
+    return spline;
+}
+
+// Further sites, where `left` (points x channels, the points are the sites) is largest.
+void addSites(const MatrixXd& left, std::vector<uint8_t>& sites) {
+    constexpr int kAtOnce = 6;
+    VectorXd size = left.rowwise().squaredNorm();
+    for (const uint8_t s : sites) size(s) = -1;
+    for (int i = 0; i < kAtOnce; ++i) {
+        Eigen::Index worst = 0;
+        if (size.maxCoeff(&worst) < 0) return;
+        sites.push_back(uint8_t(worst));
+        size(worst) = -1;
+    }
+}
+
+}  // namespace
+
+std::vector<uint8_t> usualSites() {
+    std::vector<uint8_t> sites;
+    for (const glm::dvec2 c : defaultCentres()) {
+        const auto& all = centreSites();
+        const auto nearest = std::min_element(all.begin(), all.end(), [&](glm::dvec2 a, glm::dvec2 b) {
+            const glm::dvec2 da = a - c, db = b - c;
+            return da.x * da.x + da.y * da.y < db.x * db.x + db.y * db.y;
+        });
+        const auto site = uint8_t(nearest - all.begin());
+        if (std::find(sites.begin(), sites.end(), site) == sites.end()) sites.push_back(site);
+    }
+    return sites;
+}
+
+struct SplineRefit::System {
+    std::vector<uint8_t> sites;  // empty: the default centres
+    std::unique_ptr<const NewtonBasis> basis;
+    std::unique_ptr<const Factorized> own;
+
+    explicit System(std::vector<uint8_t> places) : sites(std::move(places)) {
+        if (sites.empty()) return;
+        basis = std::make_unique<NewtonBasis>(sites);
+        own = std::make_unique<Factorized>(newtonFunctions(*basis));
+    }
+    const Factorized& factorized() const { return own ? *own : defaultFactorized(); }
+};
+
+SplineRefit::SplineRefit(const PatchSpline& like) {
+    std::vector<uint8_t> sites = like.sites;
+    const bool usual = sites.empty() && like.centres.empty() &&
+                       std::any_of(like.terms.begin(), like.terms.end(), [](uint8_t n) { return n > 0; });
+    if (sites.empty() && !usual) sites = {0, 1, 2};
+    mSystem = std::make_unique<System>(std::move(sites));
+}
+SplineRefit::~SplineRefit() = default;
+SplineRefit::SplineRefit(SplineRefit&&) noexcept = default;
+SplineRefit& SplineRefit::operator=(SplineRefit&&) noexcept = default;
+
+const std::vector<Barycentric>& SplineRefit::barycentrics() {
+    static const std::vector<Barycentric> all = [] {
+        std::vector<Barycentric> b;
+        for (const glm::dvec2 s : centreSites()) b.push_back(barycentricOf(s));
+        return b;
+    }();
+    return all;
+}
+
+const DomainPoints& SplineRefit::points() {
+    static const DomainPoints all(barycentrics());
+    return all;
+}
+
+PatchSpline SplineRefit::fit(std::span<const double> values, int channels) const {
+    const Eigen::Map<const MatrixXd> targets(values.data(), kPoints, channels);
+    const auto deviation = [&](const MatrixXd& left) { return left.cwiseAbs().mean(); };
+    const Factorized& first = mSystem->factorized();
+    MatrixXd factors = first.solve(targets);
+    MatrixXd left = targets - first.functions * factors;
+    if (deviation(left) <= kRefitTolerance)
+        return mSystem->basis ? newtonSpline(*mSystem->basis, factors) : defaultSpline(factors);
+
+    std::vector<uint8_t> sites = mSystem->basis ? mSystem->sites : usualSites();
+    for (;;) {
+        addSites(left, sites);
+        const NewtonBasis basis(sites);
+        const Factorized more(newtonFunctions(basis));
+        factors = more.solve(targets);
+        left = targets - more.functions * factors;
+        if (deviation(left) <= kRefitTolerance || sites.size() == kCentreSites)
+            return newtonSpline(basis, factors);
+    }
+}
+
+}  // namespace tessera

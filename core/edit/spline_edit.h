@@ -1,0 +1,60 @@
+// Splines changed as functions: channels mixed exactly, or fitted to values at points of the domain.
+#pragma once
+
+#include <array>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/edit/colour_samples.h"
+#include "core/mesh/colour_basis.h"
+#include "core/mesh/tps.h"
+
+namespace tessera {
+
+// colour -> matrix * colour + offset, in gamma-encoded sRGB.
+struct AffineColour {
+    glm::dmat3 matrix{1};
+    glm::dvec3 offset{0};
+
+    glm::dvec3 operator()(glm::dvec3 colour) const { return matrix * colour + offset; }
+};
+
+// Goes `strength` of the way to the hue and saturation of a colour; luma stays.
+AffineColour tinted(glm::dvec3 colour, double strength);
+
+// The spline with its colours changed, whatever its alpha: exact but for the rounding of coefficients. A
+// channel gets as many terms as the longest of those that it is mixed of: channels use prefixes of one list
+// of centres.
+PatchSpline mixed(const PatchSpline& spline, int channels, ColourBasis basis, const AffineColour& change);
+
+// The least-squares fit of splines with the centres of a given one to values at points of the domain.
+// Factorized once, for many fits. A spline without terms or with centres of its own gets sites.
+class SplineRefit {
+  public:
+    explicit SplineRefit(const PatchSpline& like);
+    ~SplineRefit();
+    SplineRefit(SplineRefit&&) noexcept;
+    SplineRefit& operator=(SplineRefit&&) noexcept;
+
+    // Where the values are: the 66 sites, in the order of centreSites().
+    static const std::vector<Barycentric>& barycentrics();
+    static const DomainPoints& points();
+
+    // values[c * points().size() + i] of channel c at point i, in the basis of the spline. Where the mean
+    // deviation at the points is more than kRefitTolerance the spline gets further sites. Thread-safe.
+    PatchSpline fit(std::span<const double> values, int channels) const;
+
+  private:
+    struct System;
+    std::unique_ptr<System> mSystem;
+};
+
+// The places among the sites that are nearest to the default centres, the corners first.
+std::vector<uint8_t> usualSites();
+
+constexpr double kRefitTolerance = .35 / 255;
+
+}  // namespace tessera

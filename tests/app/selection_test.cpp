@@ -1,0 +1,159 @@
+// The selection, how it follows edits, and the selections that a document keeps.
+#include "app/selection.h"
+
+#include <gtest/gtest.h>
+
+#include "app/edit_actions.h"
+#include "app/selection_actions.h"
+#include "core/edit/split_merge.h"
+#include "tests/support/edits.h"
+#include "tests/support/test_meshes.h"
+
+namespace tessera {
+namespace {
+
+Document smallDocument() {
+    Document document;
+    document.mesh = testing::curvedMesh(120, 90, 5, 4, 3);
+    return document;
+}
+
+struct SelectionTest : ::testing::Test {
+    PatchSet ids(std::initializer_list<uint32_t> indices) const {
+        PatchSet set;
+        for (const uint32_t i : indices) set.push_back(PatchId(i));
+        return set;
+    }
+    const PatchMesh& mesh() const { return session.document().mesh; }
+
+    DocumentSession session{smallDocument(), {}, {}, {}};
+    Selection& selection = session.selection();
+};
+
+TEST_F(SelectionTest, ModesCombineSets) {
+    const PatchSet a = ids({1, 2, 3}), b = ids({3, 4});
+    EXPECT_EQ(combined(a, b, SelectMode::Replace), b);
+    EXPECT_EQ(combined(a, b, SelectMode::Add), ids({1, 2, 3, 4}));
+    EXPECT_EQ(combined(a, b, SelectMode::Subtract), ids({1, 2}));
+    EXPECT_EQ(combined(a, b, SelectMode::Intersect), ids({3}));
+}
+
+TEST_F(SelectionTest, SignalsOnceAndOnlyChanges) {
+    int signalled = 0;
+    QObject::connect(&selection, &Selection::changed, [&] { ++signalled; });
+    selection.setPatches(ids({4, 2, 4}));
+    EXPECT_EQ(selection.patches(), ids({2, 4}));
+    EXPECT_EQ(signalled, 1);
+    selection.setPatches(ids({2, 4}));
+    EXPECT_EQ(signalled, 1);
+    selection.setShape({ControlPointRef::of(VertexId(1))}, {EdgeId(3)});
+    selection.clear();
+    EXPECT_TRUE(selection.empty());
+    EXPECT_EQ(signalled, 3);
+    EXPECT_EQ(session.history().count(), 0) << "selecting is no edit";
+}
+
+TEST_F(SelectionTest, PartsOfWhatWasSplitAreSelected) {
+    selection.setPatches(ids({6, 11}));
+    const size_t before = mesh().patchCount();
+    constexpr Barycentric kCentre(1. / 3, 1. / 3, 1. / 3);
+    const auto split = [&](PatchMesh& m) { return splitPatch(m, PatchId(6), kCentre); };
+    ASSERT_TRUE(applyEdit(session, "Split", split).has_value());
+    ASSERT_EQ(mesh().patchCount(), before + 2);
+    EXPECT_EQ(selection.patches().size(), 4u) << "three parts and the other one";
+    EXPECT_TRUE(contains(selection.patches(), PatchId(11)));
+    session.history().undo();
+    EXPECT_EQ(selection.patches(), ids({6, 11}));
+    session.history().redo();
+    EXPECT_EQ(selection.patches().size(), 4u);
+}
+
+TEST_F(SelectionTest, WhatHasGoneIsNotSelected) {
+    std::optional<EdgeId> merged;
+    mesh().forEachEdge([&](EdgeId e) {
+        PatchMesh trial = mesh();
+        if (!merged && !mesh().connectivity().onBorder(e) && mergeEdge(trial, e)) merged = e;
+    });
+    ASSERT_TRUE(merged.has_value());
+    selectAll(session);
+    selection.setShape(controlPointsOf(mesh(), *merged), {*merged});
+    ASSERT_TRUE(applyEdit(session, "Merge", [&](PatchMesh& m) { return mergeEdge(m, *merged); }));
+    EXPECT_EQ(selection.patches(), allSelectable(mesh()));
+    EXPECT_TRUE(selection.curves().empty());
+    EXPECT_EQ(selection.points().size(), 1u) << "of the two ends one is left";
+}
+
+TEST_F(SelectionTest, AnotherMeshHasNoSelection) {
+    selection.setPatches(ids({1, 2}));
+    Document other;
+    other.mesh = testing::curvedMesh(120, 90, 6, 3, 5);
+    session.history().push(EditCommand(session, "Vectorize", other, {.replaced = true}));
+    EXPECT_TRUE(selection.empty());
+}
+
+TEST_F(SelectionTest, HiddenAndLockedPatchesLeaveIt) {
+    selection.setPatches(ids({1, 2}));
+    ASSERT_TRUE(setFlag(session, PatchFlag::Locked, true));
+    EXPECT_TRUE(selection.empty());
+    EXPECT_TRUE(mesh().attributes(PatchId(2)).locked);
+    selectAll(session);
+    EXPECT_FALSE(contains(selection.patches(), PatchId(2)));
+    invertSelection(session);
+    EXPECT_TRUE(selection.empty());
+    ASSERT_TRUE(clearFlag(session, PatchFlag::Locked));
+    EXPECT_FALSE(mesh().attributes(PatchId(2)).locked);
+    EXPECT_FALSE(setFlag(session, PatchFlag::Hidden, true).has_value()) << "nothing is selected";
+}
+
+TEST_F(SelectionTest, StoredSelectionsArePartsOfTheDocument) {
+    selection.setPatches(ids({1, 6}));
+    storeSelection(session, "sky");
+    ASSERT_EQ(session.document().selections.size(), 1u);
+    EXPECT_TRUE(session.modified());
+    selection.setPatches(ids({9}));
+    recallSelection(session, "sky", SelectMode::Add);
+    EXPECT_EQ(selection.patches(), ids({1, 6, 9}));
+    recallSelection(session, "sky");
+    EXPECT_EQ(selection.patches(), ids({1, 6}));
+    storeSelection(session, "sea");
+    EXPECT_FALSE(renameStoredSelection(session, "sea", "sky"));
+    EXPECT_TRUE(renameStoredSelection(session, "sea", "lake"));
+    constexpr Barycentric kCentre(1. / 3, 1. / 3, 1. / 3);
+    ASSERT_TRUE(
+        applyEdit(session, "Split", [&](PatchMesh& m) { return splitPatch(m, PatchId(6), kCentre); }));
+    EXPECT_EQ(session.document().selections[0].patches.size(), 4u) << "remapped with the edit";
+    session.history().undo();
+    EXPECT_EQ(session.document().selections[0].patches, ids({1, 6}));
+    removeStoredSelection(session, "sky");
+    ASSERT_EQ(session.document().selections.size(), 1u);
+    EXPECT_EQ(session.document().selections[0].name, "lake");
+    session.history().goTo(0);
+    EXPECT_TRUE(session.document().selections.empty());
+}
+
+TEST_F(SelectionTest, SimilarIsWhatTheWandFinds) {
+    selection.setPatches(ids({3}));
+    const WandOptions options{.tolerance = .1, .contiguous = false};
+    const PatchSet found = wand(mesh(), PatchId(3), options);
+    selectSimilar(session, options);
+    EXPECT_EQ(selection.patches(), found);
+}
+
+TEST_F(SelectionTest, EditsOfTheSelectionAndTheWayBack) {
+    EXPECT_FALSE(recolourSelection(session, "Tint", Tint{{1, 0, 0}, 1}).has_value());
+    EXPECT_FALSE(resetColours(session).has_value()) << "nothing has been edited";
+    selection.setPatches(ids({4, 5}));
+    const auto start = testing::bytesOf(session.document());
+    const PatchSpline spline = mesh().spline(PatchId(4));
+    ASSERT_TRUE(recolourSelection(session, "Tint", Tint{{1, 0, 0}, 1}));
+    EXPECT_NE(mesh().spline(PatchId(4)), spline);
+    ASSERT_TRUE(session.document().fitted.has_value());
+    ASSERT_TRUE(resetColours(session));
+    EXPECT_EQ(mesh().spline(PatchId(4)), spline);
+    EXPECT_EQ(session.history().count(), 2);
+    session.history().goTo(0);
+    EXPECT_EQ(testing::bytesOf(session.document()), start);
+}
+
+}  // namespace
+}  // namespace tessera

@@ -1,0 +1,237 @@
+// Several documents, their jobs, and the pictures that come and go beside files.
+#include "app/workspace.h"
+
+#include <gtest/gtest.h>
+
+#include <QSignalSpy>
+#include <QTest>
+
+#include "app/edit_session.h"
+#include "app/selection_picture.h"
+#include "core/document/codec.h"
+#include "core/image/image_io.h"
+#include "tests/support/edits.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/test_meshes.h"
+
+namespace tessera {
+namespace {
+
+constexpr int kWaitMs = 60'000;
+
+QImage stripes(int width, int height) {
+    QImage image(width, height, QImage::Format_RGB32);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            image.setPixel(x, y, x / 8 % 2 ? qRgb(200, 80, 40) : qRgb(20, 60, 90));
+    return image;
+}
+
+class WorkspaceTest : public testing::TemporaryFolderTest {
+  protected:
+    WorkspaceTest() {
+        QObject::connect(&workspace, &Workspace::said, [this](const Message& message) { said = message; });
+    }
+    QString path(const std::string& name) const { return QString::fromStdString(at(name)); }
+    bool idle() {
+        return QTest::qWaitFor([&] { return !workspace.currentJob(); }, kWaitMs);
+    }
+    // A document of a grid of one colour, in a file.
+    QString documentFile(const std::string& name, int width = 40) {
+        Document document;
+        document.mesh = testing::gridMesh(width, 30, 4, 3);
+        EXPECT_TRUE(saveDocument(document, at(name)).has_value());
+        return path(name);
+    }
+    void open(const QString& file) {
+        workspace.open(file);
+        ASSERT_TRUE(idle());
+    }
+    void change() {
+        const auto edit = [](PatchMesh& mesh) { return testing::paint(mesh, PatchId(3), .5f); };
+        ASSERT_TRUE(applyEdit(*workspace.session(), "Paint", edit));
+    }
+    AskToClose answering(CloseAnswer answer) {
+        return [this, answer](DocumentSession&) {
+            ++asked;
+            return answer;
+        };
+    }
+
+    Workspace workspace;
+    Message said;
+    int asked = 0;
+};
+
+TEST_F(WorkspaceTest, DocumentsAreOpenSideBySide) {
+    const QString a = documentFile("a.tessera", 40), b = documentFile("b.tessera", 50);
+    QSignalSpy added(&workspace, &Workspace::sessionAdded), current(&workspace, &Workspace::sessionChanged);
+    open(a);
+    open(b);
+    ASSERT_EQ(workspace.sessions().size(), 2);
+    EXPECT_EQ(workspace.session()->width(), 50);
+    EXPECT_EQ(added.size(), 2);
+    EXPECT_EQ(current.size(), 2);
+    open(a);
+    EXPECT_EQ(workspace.sessions().size(), 2) << "it was open already";
+    EXPECT_EQ(workspace.session()->width(), 40);
+    workspace.moveSession(0, 1);
+    EXPECT_EQ(workspace.sessions()[1], workspace.session());
+    workspace.open(path("c.tessera"));
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(said.kind, Message::Kind::Error);
+    EXPECT_EQ(workspace.sessions().size(), 2);
+}
+
+TEST_F(WorkspaceTest, TwoFilesOpenAtOnce) {
+    workspace.open(documentFile("a.tessera"));
+    workspace.open(documentFile("b.tessera"));
+    workspace.open(path("b.tessera"));
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(workspace.sessions().size(), 2);
+}
+
+TEST_F(WorkspaceTest, ClosingAsksWhereChangesWouldBeLost) {
+    open(documentFile("a.tessera"));
+    open(documentFile("b.tessera"));
+    QPointer<DocumentSession> b = workspace.session();
+    std::vector<bool> heard;
+    const auto hear = [&](bool closed) { heard.push_back(closed); };
+    change();
+    workspace.close(b, answering({CloseAnswer::Kind::Cancel}), hear);
+    EXPECT_EQ(workspace.sessions().size(), 2);
+    workspace.close(b, answering({CloseAnswer::Kind::Save}), hear);
+    EXPECT_EQ(workspace.sessions().size(), 2) << "not before it is written";
+    ASSERT_TRUE(QTest::qWaitFor([&] { return heard.size() == 2; }, kWaitMs));
+    EXPECT_EQ(heard, (std::vector{false, true}));
+    EXPECT_EQ(asked, 2);
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !b; }, kWaitMs));
+    EXPECT_EQ(workspace.session()->displayName(), "a.tessera");
+    const auto written = loadDocument(at("b.tessera"));
+    ASSERT_TRUE(written.has_value());
+    EXPECT_NEAR(evaluateSpline(written->mesh.spline(PatchId(3)), 0, {.3, .3}), .5, .01);
+    change();
+    workspace.closeAll(answering({CloseAnswer::Kind::Discard}), hear);
+    EXPECT_EQ(workspace.session(), nullptr);
+    EXPECT_EQ(heard.back(), true);
+}
+
+TEST_F(WorkspaceTest, ClosingAllStopsAtTheFirstThatIsKept) {
+    open(documentFile("a.tessera"));
+    change();
+    open(documentFile("b.tessera"));
+    bool closed = true;
+    workspace.closeAll(answering({CloseAnswer::Kind::Cancel}), [&](bool all) { closed = all; });
+    EXPECT_FALSE(closed);
+    EXPECT_EQ(workspace.sessions().size(), 1);
+    EXPECT_EQ(workspace.session()->displayName(), "a.tessera");
+}
+
+TEST_F(WorkspaceTest, ASaveWaitsForTheEndOfAGesture) {
+    open(documentFile("a.tessera"));
+    const auto edit = [](PatchMesh& mesh) { return testing::paint(mesh, PatchId(3), .5f); };
+    {
+        EditSession gesture(*workspace.session(), "Paint");
+        ASSERT_TRUE(gesture.preview(edit));
+        workspace.save(path("other.tessera"), true);
+        QTest::qWait(20);
+        EXPECT_FALSE(workspace.running(JobKind::Save));
+        gesture.commit();
+    }
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !workspace.session()->modified(); }, kWaitMs));
+    EXPECT_EQ(workspace.session()->displayName(), "other.tessera");
+    ASSERT_TRUE(idle());
+}
+
+TEST_F(WorkspaceTest, JobsBelongToTheirDocument) {
+    ASSERT_TRUE(stripes(160, 120).save(path("a.png")));
+    ASSERT_TRUE(stripes(600, 400).save(path("b.png")));
+    open(path("a.png"));
+    DocumentSession* const a = workspace.session();
+    VectorizeSettings settings;
+    settings.patches = 40;
+    workspace.vectorize(settings);
+    open(path("b.png"));
+    DocumentSession* const b = workspace.session();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return a->hasMesh(); }, kWaitMs));
+    EXPECT_FALSE(b->hasMesh());
+    EXPECT_TRUE(workspace.canVectorize());
+    workspace.vectorize(settings);
+    EXPECT_TRUE(workspace.running(JobKind::Vectorize));
+    workspace.setCurrent(a);
+    EXPECT_FALSE(workspace.running(JobKind::Vectorize));
+    EXPECT_TRUE(workspace.canVectorize());
+    workspace.close(b, answering({CloseAnswer::Kind::Discard}));
+    EXPECT_TRUE(idle()) << "it went with its document";
+    EXPECT_TRUE(a->document().fitted == std::nullopt);
+    EXPECT_TRUE(a->modified());
+}
+
+TEST_F(WorkspaceTest, APictureIsPastedAsADocument) {
+    const QImage picture = stripes(64, 48);
+    workspace.paste(picture);
+    ASSERT_TRUE(idle());
+    ASSERT_NE(workspace.session(), nullptr) << said.text.toStdString();
+    EXPECT_EQ(workspace.session()->displayName(), "Pasted Picture.png");
+    EXPECT_TRUE(workspace.canVectorize());
+    EXPECT_EQ(toQImage(*workspace.session()->photo().image), picture);
+    workspace.paste(QImage());
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(said.kind, Message::Kind::Error);
+    EXPECT_EQ(workspace.sessions().size(), 1);
+}
+
+TEST_F(WorkspaceTest, AMissingPhotoIsRelinked) {
+    Document document;
+    document.mesh = testing::gridMesh(64, 48, 4, 3);
+    document.source.fileName = "gone.png";
+    ASSERT_TRUE(stripes(64, 48).save(path("photo.png")));
+    document.source.sha256 = readImage(at("photo.png")).value().source.sha256;
+    ASSERT_TRUE(saveDocument(document, at("a.tessera")).has_value());
+    open(path("a.tessera"));
+    EXPECT_FALSE(workspace.canVectorize());
+    ASSERT_TRUE(stripes(65, 48).save(path("wrong.png")));
+    workspace.relinkPhoto(path("wrong.png"));
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(said.kind, Message::Kind::Error);
+    EXPECT_TRUE(said.text.contains("65 × 48")) << said.text.toStdString();
+    workspace.relinkPhoto(path("a.tessera"));
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(said.text.contains("choose a picture"));
+    QImage other = stripes(64, 48);
+    other.setPixel(3, 3, qRgb(255, 255, 255));
+    ASSERT_TRUE(other.save(path("other.png")));
+    workspace.relinkPhoto(path("other.png"));
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(workspace.canVectorize());
+    ASSERT_TRUE(said.action);
+    said.action();
+    EXPECT_TRUE(workspace.canVectorize());
+    workspace.relinkPhoto(path("photo.png"));
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(toQImage(*workspace.session()->photo().image), stripes(64, 48));
+    EXPECT_FALSE(workspace.session()->modified());
+    workspace.save(path("a.tessera"), true);
+    ASSERT_TRUE(idle());
+    ASSERT_TRUE(loadDocument(at("a.tessera"))->embeddedSource) << "from now on it cannot get lost";
+}
+
+TEST_F(WorkspaceTest, TheSelectionIsCopiedAsAPicture) {
+    open(documentFile("a.tessera"));
+    const QImage whole = selectionPicture(*workspace.session());
+    EXPECT_EQ(whole.size(), QSize(40, 30));
+    EXPECT_EQ(whole.pixel(3, 3), qRgb(0, 0, 0));
+    change();
+    // One triangle of the second cell.
+    workspace.session()->selection().setPatches({PatchId(3)});
+    const QImage picture = selectionPicture(*workspace.session());
+    EXPECT_EQ(picture.size(), QSize(10, 10));
+    EXPECT_EQ(picture.pixelColor(1, 8).alpha(), 255);
+    EXPECT_NEAR(picture.pixelColor(1, 8).red(), 128, 1);
+    EXPECT_EQ(picture.pixelColor(8, 1).alpha(), 0);
+    EXPECT_GT(picture.pixelColor(5, 5).alpha(), 0);
+    EXPECT_LT(picture.pixelColor(5, 5).alpha(), 255) << "on the curve, in part";
+}
+
+}  // namespace
+}  // namespace tessera

@@ -1,0 +1,202 @@
+// Splitting and merging: the picture stays, and so does every invariant.
+#include "core/edit/split_merge.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/edit/drag_colour.h"
+#include "core/export/rasterize.h"
+#include "tests/support/edit_meshes.h"
+#include "tests/support/test_meshes.h"
+
+namespace tessera {
+namespace {
+
+using testing::curvedMesh;
+using testing::expectValid;
+using testing::gridMesh;
+using ::testing::HasSubstr;
+using testing::sameMesh;
+using testing::sceneMesh;
+
+const PatchMesh& scene() {
+    static const PatchMesh mesh = sceneMesh();
+    return mesh;
+}
+
+struct Difference {
+    double mean = 0;
+    size_t beyond = 0;  // pixels off by more than 8 levels
+};
+
+// In levels, at twice the size.
+Difference difference(const PatchMesh& a, const PatchMesh& b) {
+    const View view = wholePicture(a, {2, 2});
+    const auto one = rasterize(a, view), other = rasterize(b, view);
+    Difference result;
+    if (!one || !other) return {HUGE_VAL, 0};
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+            double worst = 0;
+            for (int c = 0; c < a.channels(); ++c) {
+                const double off = 255 * std::abs(double(one->at(x, y, c)) - double(other->at(x, y, c)));
+                result.mean += off;
+                worst = std::max(worst, off);
+            }
+            result.beyond += worst > 8;
+        }
+    result.mean /= double(view.width) * view.height * a.channels();
+    return result;
+}
+
+TEST(SplitEdge, KeepsThePicture) {
+    PatchMesh mesh = scene();
+    const size_t patches = mesh.patchCount();
+    size_t splits = 0;
+    for (uint32_t e = 0; e < scene().connectivity().edgeCapacity(); e += 7) {
+        const auto touched = splitEdge(mesh, EdgeId(e), .35);
+        if (!touched) continue;
+        EXPECT_TRUE(touched->topology);
+        ++splits;
+    }
+    EXPECT_GT(splits, 25U);
+    EXPECT_GT(mesh.patchCount(), patches + splits);
+    expectValid(mesh);
+    const Difference off = difference(mesh, scene());
+    EXPECT_LT(off.mean, .5);
+    EXPECT_LT(off.beyond, size_t(.004 * 400 * 300));
+}
+
+TEST(SplitEdge, WorksWithDefaultCentresAndOnTheBorder) {
+    const PatchMesh start = curvedMesh(120, 90, 6, 5, 3);
+    PatchMesh mesh = start;
+    EdgeId border;
+    mesh.forEachEdge([&](EdgeId e) {
+        if (mesh.connectivity().onBorder(e)) border = e;
+    });
+    ASSERT_TRUE(splitEdge(mesh, border, .5));
+    for (uint32_t e = 0; e < 40; e += 3) splitEdge(mesh, EdgeId(e), .6);
+    expectValid(mesh);
+    EXPECT_LT(difference(mesh, start).mean, .5);
+}
+
+TEST(SplitEdge, HalvesOfAFeatureAreSmoothAndInheritItsBlur) {
+    PatchMesh mesh = scene();
+    std::vector<EdgeId> features;
+    mesh.forEachEdge([&](EdgeId e) {
+        EdgeCurve curve = mesh.curve(e);
+        if (!curve.feature) return;
+        features.push_back(e);
+        curve.blurSigma = {1, 3};
+        mesh.setCurve(e, curve);
+    });
+    Result<Touched> touched = failure(ErrorCode::Usage, "there are no features");
+    EdgeId feature;
+    const size_t joins = mesh.smoothJoins().size();
+    for (size_t i = 0; i < features.size() && !touched; ++i)
+        touched = splitEdge(mesh, feature = features[i], .5);
+    ASSERT_TRUE(touched) << touched.error().message;
+    ASSERT_EQ(touched->vertices.size(), 1U);
+    EXPECT_EQ(mesh.smoothJoins().size(), joins + 1);
+    int halves = 0;
+    for (const EdgeId e : touched->edges) {
+        if (!mesh.curve(e).feature) continue;
+        ++halves;
+        EXPECT_NEAR(mesh.curve(e).blurSigma[0] + mesh.curve(e).blurSigma[1], e == feature ? 3 : 5, 1e-6);
+    }
+    EXPECT_EQ(halves, 2);
+    expectValid(mesh);
+}
+
+TEST(SplitPatch, KeepsThePicture) {
+    PatchMesh mesh = scene();
+    size_t splits = 0;
+    for (uint32_t p = 0; p < 200; p += 9) splits += splitPatch(mesh, PatchId(p), {.3, .45, .25}).has_value();
+    EXPECT_GT(splits, 15U);
+    EXPECT_EQ(mesh.patchCount(), scene().patchCount() + 2 * splits);
+    expectValid(mesh);
+    const Difference off = difference(mesh, scene());
+    EXPECT_LT(off.mean, .5);
+    EXPECT_LT(off.beyond, size_t(.004 * 400 * 300));
+    EXPECT_FALSE(hasFitted(mesh, scene(), PatchId(0)));
+    EXPECT_TRUE(hasFitted(mesh, scene(), PatchId(100)));
+}
+
+TEST(Split, RefusesWhatCannotBe) {
+    PatchMesh mesh = gridMesh(40, 40, 2, 2);
+    const PatchMesh before = mesh;
+    EXPECT_FALSE(splitEdge(mesh, EdgeId(3), 0));
+    EXPECT_FALSE(splitEdge(mesh, EdgeId(3), 1));
+    EXPECT_FALSE(splitEdge(mesh, EdgeId(999), .5));
+    EXPECT_FALSE(splitPatch(mesh, PatchId(0), {1, 0, 0}));
+    mesh.setAttributes(PatchId(0), {false, true, false});
+    const auto locked = splitPatch(mesh, PatchId(0), Barycentric(1.0 / 3));
+    ASSERT_FALSE(locked);
+    EXPECT_THAT(locked.error().message, HasSubstr("locked"));
+    mesh.setAttributes(PatchId(0), {});
+    EXPECT_TRUE(sameMesh(mesh, before));
+    // Down to the lattice: at some point there is no room.
+    bool refused = false;
+    for (int i = 0; i < 30 && !refused; ++i) refused = !splitPatch(mesh, PatchId(0), Barycentric(1.0 / 3));
+    EXPECT_TRUE(refused);
+    expectValid(mesh);
+}
+
+TEST(MergeEdge, TakesAVertexAway) {
+    PatchMesh mesh = gridMesh(80, 80, 4, 4);
+    const size_t patches = mesh.patchCount(), vertices = mesh.connectivity().vertexCount();
+    size_t merged = 0;
+    EdgeId inner;
+    mesh.forEachEdge([&](EdgeId e) {
+        const HalfedgeId h = HalfedgeMesh::halfedge(e);
+        if (!mesh.connectivity().onBorder(mesh.connectivity().origin(h)) &&
+            !mesh.connectivity().onBorder(mesh.connectivity().target(h)))
+            inner = e;
+    });
+    const auto touched = mergeEdge(mesh, inner);
+    ASSERT_TRUE(touched) << touched.error().message;
+    ++merged;
+    EXPECT_EQ(mesh.patchCount(), patches - 2);
+    EXPECT_EQ(mesh.connectivity().vertexCount(), vertices - merged);
+    EXPECT_FALSE(mesh.connectivity().alive(inner));
+    expectValid(mesh);
+    EXPECT_FALSE(mergeEdge(mesh, inner));
+}
+
+TEST(MergeEdge, KeepsTheOutlineAndRefusesFolds) {
+    PatchMesh mesh = gridMesh(40, 40, 1, 1);
+    mesh.forEachEdge([&](EdgeId e) { EXPECT_FALSE(mergeEdge(mesh, e)) << e.index; });
+    mesh = scene();
+    std::mt19937 random(5);
+    size_t merged = 0, refused = 0;
+    for (int i = 0; i < 150; ++i) {
+        const EdgeId e(uint32_t(random() % mesh.connectivity().edgeCapacity()));
+        if (!mesh.connectivity().alive(e)) continue;
+        const PatchMesh before = mesh;
+        if (mergeEdge(mesh, e)) {
+            ++merged;
+        } else {
+            ++refused;
+            EXPECT_TRUE(sameMesh(mesh, before));
+        }
+    }
+    EXPECT_GT(merged, 20U);
+    EXPECT_GT(refused, 5U);
+    expectValid(mesh);
+}
+
+TEST(MergeEdge, UndoesASplit) {
+    PatchMesh mesh = scene();
+    const auto split = splitPatch(mesh, PatchId(50), Barycentric(1.0 / 3));
+    ASSERT_TRUE(split);
+    const auto merged = mergeEdge(mesh, split->edges[0]);
+    ASSERT_TRUE(merged) << merged.error().message;
+    EXPECT_EQ(mesh.patchCount(), scene().patchCount());
+    expectValid(mesh);
+}
+
+}  // namespace
+}  // namespace tessera
