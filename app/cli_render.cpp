@@ -54,7 +54,11 @@ Result<Image> drawWithGl(const PatchMesh& mesh, const View& view, const Argument
     auto renderer = render::Renderer::create();
     if (!renderer) return tl::unexpected(renderer.error());
     renderer->setMesh(mesh);
-    Image image(view.width, view.height, mesh.channels());
+    // As from the processor, with alpha where a patch is left out.
+    bool cutOut = false;
+    mesh.forEachPatch([&](PatchId p) { cutOut = cutOut || mesh.attributes(p).cutOut; });
+    const int channels = cutOut ? kMaxChannels : mesh.channels();
+    Image image(view.width, view.height, channels);
     for (int y0 = 0; y0 < view.height; y0 += kTile)
         for (int x0 = 0; x0 < view.width; x0 += kTile) {
             View tile = view;
@@ -66,8 +70,8 @@ Result<Image> drawWithGl(const PatchMesh& mesh, const View& view, const Argument
             const auto drawn =
                 renderer->draw(tile, {.samples = arguments.samples, .sharpen = arguments.sharpen});
             if (!drawn) return tl::unexpected(drawn.error());
-            const Image part = target.read(mesh.channels());
-            for (int c = 0; c < mesh.channels(); ++c)
+            const Image part = target.read(channels);
+            for (int c = 0; c < channels; ++c)
                 for (int y = 0; y < tile.height; ++y)
                     for (int x = 0; x < tile.width; ++x) image.at(x0 + x, y0 + y, c) = part.at(x, y, c);
             if (!progress.step(double(y0) / view.height)) return stopped();

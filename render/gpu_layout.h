@@ -32,7 +32,7 @@ struct GpuEdge {
 };
 static_assert(sizeof(GpuEdge) == 2 * 16);
 
-constexpr uint32_t kGpuDrawn = 1, kGpuAffine = 2, kGpuCutOut = 4;
+constexpr uint32_t kGpuDrawn = 1, kGpuAffine = 2, kGpuHidden = 4;
 
 struct GpuPatch {
     std::array<uint32_t, 3> sides;
@@ -112,8 +112,10 @@ struct GpuView {
     uint32_t drawVertices;
     uint32_t drawCount;
     float sharpen;
+    uint32_t showHidden;
+    std::array<uint32_t, 3> padding;
 };
-static_assert(sizeof(GpuView) == 80);
+static_assert(sizeof(GpuView) == 96);
 
 constexpr uint32_t kGpuNoPatch = 0xffffffff;
 

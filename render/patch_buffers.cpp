@@ -81,7 +81,6 @@ void PatchBuffers::setMesh(const PatchMesh& mesh, double sharpen) {
     mEdges.resize(c.edgeCapacity());
     mPatches.resize(c.faceCapacity());
     mSigmas.assign(c.edgeCapacity(), {-1, -1});
-    mHidden.assign(c.faceCapacity(), false);
     mRuns.assign(c.faceCapacity(), {});
     mHeap.clear();
     mesh.forEachEdge([&](EdgeId e) { setEdge(mesh, e); });
@@ -104,18 +103,6 @@ void PatchBuffers::update(const PatchMesh& mesh, std::span<const PatchId> patche
     if (moved) setBlur(mesh, sharpen);
 }
 
-void PatchBuffers::setHidden(std::span<const PatchId> patches) {
-    std::vector<bool> hidden(mPatches.size(), false);
-    for (const PatchId p : patches) hidden[p.index] = true;
-    for (size_t i = 0; i < hidden.size(); ++i) {
-        if (hidden[i] == mHidden[i]) continue;
-        GpuPatch patch = mPatches[i];
-        patch.flags ^= kGpuDrawn;
-        mPatches.set(i, patch);
-    }
-    mHidden = std::move(hidden);
-}
-
 bool PatchBuffers::setEdge(const PatchMesh& mesh, EdgeId e) {
     const HalfedgeId h = HalfedgeMesh::halfedge(e);
     const auto control = mesh.controlPoints(h);
@@ -134,7 +121,9 @@ void PatchBuffers::setPatch(const PatchMesh& mesh, PatchId p) {
     GpuPatch patch{};
     const auto sides = c.sides(p);
     for (size_t i = 0; i < sides.size(); ++i) patch.sides[i] = sides[i].index;
-    patch.flags = (mHidden[p.index] ? 0 : kGpuDrawn) | (affine(mesh.controlPoints(p)) ? kGpuAffine : 0);
+    const PatchAttributes& attributes = mesh.attributes(p);
+    patch.flags = (attributes.cutOut ? 0 : kGpuDrawn) | (attributes.hidden ? kGpuHidden : 0) |
+                  (affine(mesh.controlPoints(p)) ? kGpuAffine : 0);
     patch.interior = toGpu(mesh.interior(p));
     setSpline(mesh, p, patch);
     mPatches.set(p.index, patch);

@@ -40,8 +40,6 @@ class PatchBuffers {
     // What belongs to these patches: their control points, those on their sides included, their splines, and
     // the features of the whole mesh where a side has moved or changed its blur. Connectivity is as it was.
     void update(const PatchMesh& mesh, std::span<const PatchId> patches, double sharpen);
-    // Patches that are not drawn, in place of those given before. Ascending.
-    void setHidden(std::span<const PatchId> patches);
     // The features alone, with another `sharpen`.
     void setBlur(const PatchMesh& mesh, double sharpen);
 
@@ -68,7 +66,6 @@ class PatchBuffers {
     TermHeap mHeap;
     std::vector<TermHeap::Run> mRuns;           // by patch id
     std::vector<std::array<float, 2>> mSigmas;  // by edge id; -1 where the edge is no feature
-    std::vector<bool> mHidden;
     bool mBlurred = false;
 };
 

@@ -63,10 +63,6 @@ void Renderer::update(const PatchMesh& mesh, std::span<const PatchId> patches) {
     mState->buffers.update(mesh, patches, mState->sharpen);
 }
 
-void Renderer::setHidden(std::span<const PatchId> patches) {
-    mState->buffers.setHidden(patches);
-}
-
 size_t Renderer::uploadedBytes() const {
     return mState->uploadedBytes;
 }
@@ -84,6 +80,7 @@ void Renderer::State::prepare(const View& view, const DrawOptions& options, glm:
     block.edgeCount = uint32_t(buffers.edgeCount());
     lod.plan(block);
     block.sharpen = buffers.blurred() ? float(options.sharpen) : 0;
+    block.showHidden = options.showHidden;
     viewBlock.reserve(sizeof(block));
     viewBlock.write(0, &block, sizeof(block));
     visibility.resize(view.width * perSide, view.height * perSide);

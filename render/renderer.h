@@ -13,14 +13,15 @@
 namespace tessera::render {
 
 struct DrawOptions {
-    int samples = 4;     // per pixel: 1 (its centre) or 4 (a regular grid, averaged)
-    double sharpen = 1;  // multiplies the blur of every feature; 0 draws hard features
+    int samples = 4;         // per pixel: 1 (its centre) or 4 (a regular grid, averaged)
+    double sharpen = 1;      // multiplies the blur of every feature; 0 draws hard features
+    bool showHidden = true;  // whether hidden patches are drawn as any other; those cut out never are
     // By the paper's own 4-way subdivision in a compute shader instead of the tessellator: slower, for
     // comparison.
     bool computeSubdivision = false;
 };
 
-// All functions but setMesh, update and setHidden, and the destructor too, need the context that create() was
+// All functions but setMesh and update, and the destructor too, need the context that create() was
 // called in to be current. What a frame changes in it is put back (StateScope in gl_objects.h says what), so
 // that a toolkit's context will do.
 class Renderer {
@@ -32,13 +33,11 @@ class Renderer {
     Renderer& operator=(Renderer&&) noexcept;
     ~Renderer();
 
-    // Takes over a mesh; needed where connectivity, size or colour basis changed. Shows all patches. Nothing
-    // is uploaded before the next frame.
+    // Takes over a mesh; needed where connectivity, size or colour basis changed. Nothing is uploaded
+    // before the next frame.
     void setMesh(const PatchMesh& mesh);
     // The mesh after an edit that changed these patches alone, in geometry, colour or attributes.
     void update(const PatchMesh& mesh, std::span<const PatchId> patches);
-    // The patches that are not drawn, in place of those given before.
-    void setHidden(std::span<const PatchId> patches);
 
     // Draws over the viewport of the framebuffer that is bound for drawing, whose size is the view's, the
     // picture's top at the viewport's: values in the working space, premultiplied, not clamped by us, 0

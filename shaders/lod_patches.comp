@@ -72,7 +72,7 @@ void main() {
     const uint p = gl_GlobalInvocationID.x;
     if (p >= view.patchCount) return;
     const PatchShape shape = loadShape(p);
-    if ((shape.flags & kDrawn) == 0u) return;
+    if (!isDrawn(shape)) return;
     ivec2 lattice[10];
     loadControlPoints(shape, lattice);
     vec2 b[10];

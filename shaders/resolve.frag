@@ -113,7 +113,6 @@ vec4 sumOfSplines(uint p, vec2 grid[SAMPLES], uvec2 visible[SAMPLES], uint mask)
 
 // The sum of the colours of the samples in `mask`, which are all patch p's.
 vec4 sumOfSamples(uint p, vec2 grid[SAMPLES], uvec2 visible[SAMPLES], vec2 samples[SAMPLES], uint mask) {
-    if ((loadFlags(p) & kCutOut) != 0u) return vec4(0.0);
     vec4 sum = sumOfSplines(p, grid, visible, mask);
 #ifdef COUNT_EVALUATIONS
     const uint before = evaluations;

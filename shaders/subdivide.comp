@@ -102,7 +102,7 @@ void main() {
     if (gl_GlobalInvocationID.x >= min(queue.count, uint(queue.pieces.length()))) return;
     const uvec2 piece = queue.pieces[gl_GlobalInvocationID.x];
     const PatchShape shape = loadShape(piece.x);
-    if ((shape.flags & kDrawn) == 0u) return;
+    if (!isDrawn(shape)) return;
     loadControlPoints(shape, lattice);
     float extent = 0.0;
     for (int i = 0; i < 10; ++i) {

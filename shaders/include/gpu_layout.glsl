@@ -17,6 +17,7 @@ layout(std140, binding = 0) uniform ViewBlock {
     uint drawVertices;    // about as many are tessellated in a draw; 0: one draw does it all
     uint drawCount;
     float sharpen;        // 0: no blur
+    uint showHidden;
 }
 view;
 
@@ -40,9 +41,9 @@ void loadEdge(uint e, out ivec2 p[4]) {
     p[3] = second.zw;
 }
 
-const uint kDrawn = 1u;   // the patch exists and is not hidden
+const uint kDrawn = 1u;   // the patch exists and is not cut out
 const uint kAffine = 2u;  // its control points are those of a straight triangle
-const uint kCutOut = 4u;  // it is transparent
+const uint kHidden = 4u;
 
 struct PatchShape {
     uvec3 sides;  // halfedges: edge << 1 | 1 where it runs against the edge
@@ -53,8 +54,8 @@ PatchShape loadShape(uint p) {
     const uvec4 first = texelFetch(patchTexels, int(5u * p)), second = texelFetch(patchTexels, int(5u * p + 1u));
     return PatchShape(first.xyz, first.w, ivec2(second.xy));
 }
-uint loadFlags(uint p) {
-    return texelFetch(patchTexels, int(5u * p)).w;
+bool isDrawn(PatchShape shape) {
+    return (shape.flags & kDrawn) != 0u && ((shape.flags & kHidden) == 0u || view.showHidden != 0u);
 }
 
 // A spline's terms: those of channel 0 or more, of which the first `others` have the other channels.

@@ -1,5 +1,15 @@
 // The colour function of a patch (core/mesh/COLOUR.md).
 
+// The natural logarithm, to about 1e-7. Splines with large alphas that cancel show what a driver's log2 lacks.
+float accurateLog(float q) {
+    const int bits = floatBitsToInt(q);
+    const int exponent = (bits - 0x3f3504f3) >> 23;  // so that what is left is between the roots of 1/2 and 2
+    const float m = intBitsToFloat(bits - (exponent << 23));
+    const float s = (m - 1.0) / (m + 1.0), s2 = s * s;
+    return 0.69314718056 * float(exponent) +
+           2.0 * s * (1.0 + s2 * (0.33333333333 + s2 * (0.2 + s2 * (0.14285714286 + s2 * 0.11111111111))));
+}
+
 // The most that a channel of the working space can differ where those of the basis differ so.
 float largestInWorking(vec4 c) {
     const float opponent =
@@ -30,8 +40,8 @@ vec4 evaluateSpline(uint p, SplinePlace place, out float unsure) {
         const vec2 off = at - term.xy;
         const float q = dot(off, off) + trace;
         const vec2 rest = i < terms.others ? loadTermRest(terms.first + i) : vec2(0.0);
-        // 0 at 0, where log2 is not finite.
-        float phi = q > 0.0 ? 0.34657359028 * q * log2(q) : 0.0;
+        // 0 at 0, where the logarithm is not finite.
+        float phi = q > 0.0 ? 0.5 * q * accurateLog(q) : 0.0;
 #if SAMPLES > 1
         if (q > 0.0) {
             phi += dot(place.spread, vec3(off * off, 2.0 * off.x * off.y)) / q;

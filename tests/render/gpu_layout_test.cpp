@@ -156,16 +156,16 @@ TEST_F(GpuLayout, View) {
             "put(view.origin); put(view.fraction); put(view.gridPerUnit); put(view.gridSize);"
             "put(view.target); put(view.edgeTolerance); put(view.insideTolerance); put(view.patchCount);"
             "put(view.edgeCount); put(view.opponent); put(view.channels); put(view.pieceCapacity);"
-            "put(view.drawVertices); put(view.drawCount); put(view.sharpen);"),
-        {words.begin(), words.begin() + 18});
+            "put(view.drawVertices); put(view.drawCount); put(view.sharpen); put(view.showHidden);"),
+        {words.begin(), words.begin() + 21});
 }
 
 TEST_F(GpuLayout, FlagsAreTheSameInBothLanguages) {
     expectBeginsWith(
-        wordsFrom("put(kDrawn); put(kAffine); put(kCutOut); put(kEven); put(kFadesAtBegin);"
+        wordsFrom("put(kDrawn); put(kAffine); put(kHidden); put(kEven); put(kFadesAtBegin);"
                   "put(kFadesAtEnd); put(kSideShift); put(kFeatureSegments); put(kReachFromLeft);"
                   "put(kReachFromRight); put(kNoPatch);"),
-        {kGpuDrawn, kGpuAffine, kGpuCutOut, kGpuEven, kGpuFadesAtBegin, kGpuFadesAtEnd, kGpuSideShift,
+        {kGpuDrawn, kGpuAffine, kGpuHidden, kGpuEven, kGpuFadesAtBegin, kGpuFadesAtEnd, kGpuSideShift,
          uint32_t(kGpuFeatureSegments), kGpuReachFromLeft, kGpuReachFromRight, kGpuNoPatch});
 }
 

@@ -165,27 +165,32 @@ TEST_F(RendererTest, UpdatesEqualAFreshMesh) {
     EXPECT_EQ(drawOffscreen(*renderer, mesh, view, {}), drawOffscreen(mesh, view, {}));
 }
 
-TEST_F(RendererTest, HiddenPatchesAreNotDrawn) {
-    const PatchMesh mesh = blurredMesh();
+TEST_F(RendererTest, LeavesOutWhatIsHiddenOrCutOut) {
+    PatchMesh mesh = blurredMesh();
     const View view = wholePicture(mesh, {1, 1});
     auto renderer = Renderer::create();
     ASSERT_TRUE(renderer);
     renderer->setMesh(mesh);
-    const Image all = drawOffscreen(*renderer, mesh, view, {.samples = 1});
-    const PatchId hidden(50);
-    renderer->setHidden(std::array{hidden});
-    const Image frame = drawOffscreen(*renderer, mesh, view, {.samples = 1});
-    const auto owners = locatePixels(mesh, view);
-    size_t blank = 0, wrong = 0;
-    for (size_t i = 0; i < owners.size(); ++i) {
-        const bool mine = owners[i].patch == hidden;
-        blank += mine && frame.plane(0)[i] == 0;
-        wrong += !mine && frame.plane(0)[i] != all.plane(0)[i];
+    const PatchId hidden(50), cutOut(90);
+    mesh.setAttributes(hidden, {.hidden = true});
+    mesh.setAttributes(cutOut, {.cutOut = true});
+    renderer->update(mesh, std::array{hidden, cutOut});
+    const render::OffscreenTarget target(view.width, view.height);
+    target.bind();
+    for (const bool showHidden : {true, false}) {
+        ASSERT_TRUE(renderer->draw(view, {.samples = 1, .showHidden = showHidden}));
+        const Image frame = target.read(4);
+        const auto expected = rasterize(mesh, view, {.samples = 1, .showHidden = showHidden});
+        ASSERT_TRUE(expected);
+        ASSERT_EQ(expected->channels(), 4);
+        size_t blank = 0, different = 0;
+        for (size_t i = 0; i < frame.planeSize(); ++i) {
+            blank += frame.plane(3)[i] == 0;
+            different += frame.plane(3)[i] != expected->plane(3)[i];
+        }
+        EXPECT_GT(blank, showHidden ? 200U : 400U);
+        EXPECT_LT(different, 20U);  // at their edges
     }
-    EXPECT_GT(blank, 200U);
-    EXPECT_LT(wrong, 10U);  // at its edges
-    renderer->setHidden({});
-    EXPECT_EQ(drawOffscreen(*renderer, mesh, view, {.samples = 1}), all);
 }
 
 TEST_F(RendererTest, OneEvaluationAPixelOutsideBlur) {

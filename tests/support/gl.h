@@ -101,13 +101,14 @@ inline FrameDifference differenceFromCpu(const PatchMesh& mesh, const View& view
     return result;
 }
 
-// The rule of the two renderers: 99.9 % of the pixels within the tolerance, and all away from edges.
+// The rule of the two renderers: 99.9 % of the pixels within the tolerance, and all away from edges; with
+// four samples, whose mean is taken to second order, there within half as much again.
 inline void expectSamePicture(const PatchMesh& mesh, const View& view, const render::DrawOptions& options) {
     const Image frame = drawOffscreen(mesh, view, options);
     const FrameDifference difference =
         differenceFromCpu(mesh, view, frame, {options.samples, options.sharpen});
     EXPECT_LE(difference.badShare, .001) << "worst " << difference.worst;
-    EXPECT_LE(difference.worstInside, FrameDifference::kTolerance);
+    EXPECT_LE(difference.worstInside, (options.samples == 1 ? 1 : 1.5) * FrameDifference::kTolerance);
 }
 
 // Part of a mesh's picture at `zoom`, around its middle but on no round coordinate.
