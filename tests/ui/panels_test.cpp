@@ -660,7 +660,7 @@ TEST_F(HistoryPanelTest, AClickGoesToAState) {
 
 TEST_F(HistoryPanelTest, FollowsTheDocument) {
     auto* memory = child<QLabel>(panel, "memory");
-    EXPECT_TRUE(memory->text().startsWith("3 step")) << memory->text().toStdString();
+    EXPECT_TRUE(memory->text().startsWith("Steps: 3, ")) << memory->text().toStdString();
     history().undo();
     EXPECT_EQ(list()->currentIndex().row(), 2);
     ASSERT_TRUE(applyEdit(*session, "New", [](PatchMesh& m) { return testing::paint(m, PatchId(9), 0); }));
