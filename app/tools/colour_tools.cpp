@@ -116,34 +116,31 @@ void GradientTool::clicked(const ToolEvent&) {
 
 void GradientTool::dragStarted(const ToolEvent& event) {
     clicked(event);
-    if (session().selection().patches().empty() || !begin(mEdit, QObject::tr("Gradient"))) return;
-    mRecolourer.emplace(mEdit->start(), session().selection().patches(),
-                        RecolourOptions{.featherPx = options().featherPx});
+    if (session().selection().patches().empty() || session().editing()) return;
+    mGesture.emplace(session(), QObject::tr("Gradient"), RecolourOptions{.featherPx = options().featherPx});
 }
 
 void GradientTool::dragged(const ToolEvent& event) {
     glm::dvec2 offset = event.point - start().point;
     if (event.modifiers.shift) offset = constrainedTo45(offset);
     mLine = {start().point, start().point + offset};
-    if (!mEdit || mLine.from == mLine.to) return;
+    if (!mGesture || mLine.from == mLine.to) return;
     const ToolOptions& o = options();
-    const GradientRecolour gradient{mLine.from, mLine.to, o.colour, o.secondColour, o.gradientStrength};
-    report(mEdit->preview([&](PatchMesh& mesh) { return mRecolourer->apply(mesh, gradient); }));
+    mGesture->show(GradientRecolour{mLine.from, mLine.to, o.colour, o.secondColour, o.gradientStrength});
 }
 
 void GradientTool::dropped(const ToolEvent&) {
-    if (mEdit) mEdit->commit();
-    abandoned();
+    if (mGesture) mGesture->commit();
+    mGesture.reset();
 }
 
 void GradientTool::abandoned() {
-    mEdit.reset();
-    mRecolourer.reset();
+    mGesture.reset();
 }
 
 ToolOverlay GradientTool::overlay() const {
     ToolOverlay overlay;
-    if (mEdit && dragging())
+    if (mGesture && dragging())
         overlay.gradient = OverlayGradient{mLine, options().colour, options().secondColour};
     return overlay;
 }

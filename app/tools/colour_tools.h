@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "app/edit_session.h"
+#include "app/recolour_gesture.h"
 #include "app/tools/tool.h"
-#include "core/edit/recolour.h"
 
 namespace tessera {
 
@@ -95,8 +95,7 @@ class GradientTool : public DragTool {
     void abandoned() override;
 
   private:
-    std::optional<EditSession> mEdit;
-    std::optional<Recolourer> mRecolourer;
+    std::optional<RecolourGesture> mGesture;
     OverlayLine mLine;
 };
 

@@ -115,7 +115,7 @@ void Deformation::collect(std::span<const ControlPointRef> points, const std::ve
     for (const EdgeId e : mEdges) {
         const auto p = mStart.controlPoints(HalfedgeMesh::halfedge(e));
         const bool straight = !joined[e.index] && straightControlPoints(p[0], p[3]) == std::array{p[1], p[2]};
-        mMovingEdges.push_back({e, straight, {kNone, kNone}, mStart.curve(e)});
+        mMovingEdges.push_back({e, straight, false, {kNone, kNone}, mStart.curve(e)});
     }
     for (uint32_t i = 0; i < mPoints.size(); ++i) {
         if (mPoints[i].ref.kind != ControlPointHit::Kind::CurveInner) continue;
@@ -160,14 +160,34 @@ void Deformation::collectJoins() {
 // A patch moves as a whole where its three corners do, away from the border. Its sides' handles then do too.
 void Deformation::findRigid() {
     const HalfedgeMesh& c = mStart.connectivity();
-    for (const Point& point : mPoints)
-        if (point.weight != 1) return;
+    if (std::any_of(mPoints.begin(), mPoints.end(), [](const Point& p) { return p.weight != 1; })) {
+        mLooseVertices = mVertexPoints;
+        return;
+    }
     for (Patch& patch : mMovingPatches) {
         const auto corners = c.corners(patch.id);
         patch.rigid = std::all_of(corners.begin(), corners.end(), [&](VertexId v) {
             return mPointOfVertex[v.index] != kNone && !c.onBorder(v);
         });
     }
+    const auto isRigid = [&](PatchId p) {
+        const auto at = std::lower_bound(mPatches.begin(), mPatches.end(), p) - mPatches.begin();
+        return p.valid() && mMovingPatches[size_t(at)].rigid;
+    };
+    for (Edge& edge : mMovingEdges) {
+        const HalfedgeId h = HalfedgeMesh::halfedge(edge.id);
+        edge.rigid = isRigid(c.face(h)) && isRigid(c.face(HalfedgeMesh::twin(h)));
+    }
+    for (const uint32_t i : mVertexPoints) {
+        bool loose = false;
+        c.forEachOutgoing(mPoints[i].ref.vertex, [&](HalfedgeId h) { loose = loose || !isRigid(c.face(h)); });
+        if (loose) mLooseVertices.push_back(i);
+    }
+}
+
+size_t Deformation::looseCount() const {
+    return size_t(std::count_if(mMovingPatches.begin(), mMovingPatches.end(),
+                                [](const Patch& patch) { return !patch.rigid; }));
 }
 
 LatticePoint Deformation::step(const Point& point, std::span<const glm::dvec2> ways) const {
@@ -182,37 +202,33 @@ LatticePoint Deformation::keptOnBorder(LatticePoint at, LatticePoint to) const {
     return {std::clamp(to.x, 0, right), std::clamp(to.y, 0, bottom)};
 }
 
-void Deformation::moveVertices(PatchMesh& mesh, std::span<const glm::dvec2> ways) const {
-    for (const uint32_t i : mVertexPoints) {
-        const VertexId v = mPoints[i].ref.vertex;
-        const LatticePoint at = mStart.position(v), to = at + step(mPoints[i], ways);
-        mesh.setPosition(v, mStart.connectivity().onBorder(v) ? keptOnBorder(at, to) : to);
-    }
+void Deformation::moveVertex(PatchMesh& mesh, const Point& point, std::span<const glm::dvec2> ways) const {
+    const VertexId v = point.ref.vertex;
+    const LatticePoint at = mStart.position(v), to = at + step(point, ways);
+    mesh.setPosition(v, mStart.connectivity().onBorder(v) ? keptOnBorder(at, to) : to);
 }
 
-void Deformation::moveCurves(PatchMesh& mesh, std::span<const glm::dvec2> ways) const {
+void Deformation::moveCurve(PatchMesh& mesh, const Edge& edge, std::span<const glm::dvec2> ways) const {
     const HalfedgeMesh& c = mStart.connectivity();
-    for (const Edge& edge : mMovingEdges) {
-        const HalfedgeId h = HalfedgeMesh::halfedge(edge.id);
-        const VertexId ends[2] = {c.origin(h), c.target(h)};
-        EdgeCurve curve = mesh.curve(edge.id);
-        LatticePoint* const handles[2] = {&curve.c1, &curve.c2};
-        const LatticePoint from[2] = {edge.curve.c1, edge.curve.c2};
-        for (size_t k = 0; k < 2; ++k) {
-            if (edge.handles[k] != kNone) {
-                *handles[k] = from[k] + step(mPoints[edge.handles[k]], ways);
-                if (c.onBorder(edge.id)) *handles[k] = keptOnBorder(from[k], *handles[k]);
-            } else {
-                *handles[k] = from[k] + (mesh.position(ends[k]) - mStart.position(ends[k]));
-            }
+    const HalfedgeId h = HalfedgeMesh::halfedge(edge.id);
+    const VertexId ends[2] = {c.origin(h), c.target(h)};
+    EdgeCurve curve = mesh.curve(edge.id);
+    LatticePoint* const handles[2] = {&curve.c1, &curve.c2};
+    const LatticePoint from[2] = {edge.curve.c1, edge.curve.c2};
+    for (size_t k = 0; k < 2; ++k) {
+        if (edge.handles[k] != kNone) {
+            *handles[k] = from[k] + step(mPoints[edge.handles[k]], ways);
+            if (c.onBorder(edge.id)) *handles[k] = keptOnBorder(from[k], *handles[k]);
+        } else {
+            *handles[k] = from[k] + (mesh.position(ends[k]) - mStart.position(ends[k]));
         }
-        if (edge.straight) {
-            const auto inner = straightControlPoints(mesh.position(ends[0]), mesh.position(ends[1]));
-            curve.c1 = inner[0];
-            curve.c2 = inner[1];
-        }
-        mesh.setCurve(edge.id, curve);
     }
+    if (edge.straight) {
+        const auto inner = straightControlPoints(mesh.position(ends[0]), mesh.position(ends[1]));
+        curve.c1 = inner[0];
+        curve.c2 = inner[1];
+    }
+    mesh.setCurve(edge.id, curve);
 }
 
 void Deformation::alignJoins(PatchMesh& mesh, bool breakJoins) const {
@@ -236,12 +252,13 @@ void Deformation::alignJoins(PatchMesh& mesh, bool breakJoins) const {
                          other = leaving(mStart.connectivity(), join.second, join.vertex);
         turnAlong(mesh, mStart, first ? one : other, first ? other : one);
     }
+    // Joins only ever go, so that their number tells.
+    if (broken.empty() && mesh.smoothJoins().size() == mStart.smoothJoins().size()) return;
     std::vector<SmoothJoin> joins = mStart.smoothJoins();
-    if (!broken.empty())
-        std::erase_if(joins, [&](const SmoothJoin& j) {
-            return std::find(broken.begin(), broken.end(), j) != broken.end();
-        });
-    if (joins != mesh.smoothJoins()) mesh.setSmoothJoins(std::move(joins));
+    std::erase_if(joins, [&](const SmoothJoin& j) {
+        return std::find(broken.begin(), broken.end(), j) != broken.end();
+    });
+    mesh.setSmoothJoins(std::move(joins));
 }
 
 void Deformation::moveInterior(PatchMesh& mesh, const Patch& patch, std::span<const glm::dvec2> ways) const {
@@ -253,12 +270,25 @@ void Deformation::moveInterior(PatchMesh& mesh, const Patch& patch, std::span<co
 
 std::optional<PatchId> Deformation::apply(PatchMesh& mesh, std::span<const glm::dvec2> ways,
                                           bool breakJoins) const {
-    moveVertices(mesh, ways);
-    moveCurves(mesh, ways);
+    return run(mesh, ways, breakJoins, true);
+}
+
+std::optional<PatchId> Deformation::probe(PatchMesh& mesh, std::span<const glm::dvec2> ways,
+                                          bool breakJoins) const {
+    return run(mesh, ways, breakJoins, ways.size() != 1);
+}
+
+std::optional<PatchId> Deformation::run(PatchMesh& mesh, std::span<const glm::dvec2> ways, bool breakJoins,
+                                        bool everything) const {
+    for (const uint32_t i : everything ? mVertexPoints : mLooseVertices) moveVertex(mesh, mPoints[i], ways);
+    for (const Edge& edge : mMovingEdges)
+        if (everything || !edge.rigid) moveCurve(mesh, edge, ways);
     alignJoins(mesh, breakJoins);
-    for (const Patch& patch : mMovingPatches) moveInterior(mesh, patch, ways);
-    for (const Patch& patch : mMovingPatches)
-        if (!(patch.rigid && ways.size() == 1) && !certified(mesh.controlPoints(patch.id))) return patch.id;
+    for (const Patch& patch : mMovingPatches) {
+        const bool whole = patch.rigid && ways.size() == 1;
+        if (everything || !whole) moveInterior(mesh, patch, ways);
+        if (!whole && !certified(mesh.controlPoints(patch.id))) return patch.id;
+    }
     // A handle of no length has no tangent; given up are joins only where that is asked for.
     if (!breakJoins)
         for (const SmoothJoin& join : mJoins)

@@ -24,10 +24,14 @@ class Deformation {
     // A locked patch that would change.
     std::optional<PatchId> locked() const { return mLocked; }
     size_t pointCount() const { return mPoints.size(); }
+    // Patches that do not move as a whole.
+    size_t looseCount() const;
 
     // Sets `mesh`, the start or what an earlier call made of it, to the start with point i moved by
     // weight * ways[i] px (or all by ways[0]). Returns a patch that is not certified then, if there is one.
     std::optional<PatchId> apply(PatchMesh& mesh, std::span<const glm::dvec2> ways, bool breakJoins) const;
+    // The same answer, but patches that move as a whole are left as they are: for a search.
+    std::optional<PatchId> probe(PatchMesh& mesh, std::span<const glm::dvec2> ways, bool breakJoins) const;
 
   private:
     static constexpr uint32_t kNone = 0xffffffff;
@@ -39,6 +43,7 @@ class Deformation {
     struct Edge {
         EdgeId id;
         bool straight = false;  // and to be kept so
+        bool rigid = false;     // and so are the patches beside it
         std::array<uint32_t, 2> handles{kNone,
                                         kNone};  // dragged themselves: places in mPoints, from the start
         EdgeCurve curve;
@@ -56,14 +61,17 @@ class Deformation {
     void findRigid();
     LatticePoint step(const Point& point, std::span<const glm::dvec2> ways) const;
     LatticePoint keptOnBorder(LatticePoint at, LatticePoint to) const;
-    void moveVertices(PatchMesh& mesh, std::span<const glm::dvec2> ways) const;
-    void moveCurves(PatchMesh& mesh, std::span<const glm::dvec2> ways) const;
+    std::optional<PatchId> run(PatchMesh& mesh, std::span<const glm::dvec2> ways, bool breakJoins,
+                               bool everything) const;
+    void moveVertex(PatchMesh& mesh, const Point& point, std::span<const glm::dvec2> ways) const;
+    void moveCurve(PatchMesh& mesh, const Edge& edge, std::span<const glm::dvec2> ways) const;
     void alignJoins(PatchMesh& mesh, bool breakJoins) const;
     void moveInterior(PatchMesh& mesh, const Patch& patch, std::span<const glm::dvec2> ways) const;
 
     PatchMesh mStart;
     std::vector<Point> mPoints;
-    std::vector<uint32_t> mVertexPoints;  // places in mPoints
+    std::vector<uint32_t> mVertexPoints;   // places in mPoints
+    std::vector<uint32_t> mLooseVertices;  // of these those that are not in rigid patches alone
     std::vector<uint32_t> mPointOfVertex;
     std::vector<Edge> mMovingEdges;
     std::vector<Patch> mMovingPatches;

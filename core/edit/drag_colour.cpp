@@ -7,14 +7,20 @@
 
 #include "core/edit/colour_fan.h"
 #include "core/edit/colour_samples.h"
+#include "core/edit/spline_edit.h"
+#include "core/mesh/blur_profile.h"
 
 namespace tessera {
 
-Touched dragColour(PatchMesh& mesh, PatchId p, const Barycentric& at, glm::dvec3 colour) {
+namespace {
+
+// How much of the change each corner gets; along an edge between two patches of the ring both have the same.
+using Corners = std::array<double, 3>;
+
+// The patches of the ring, each with its corners' shares: those around the patch's corners, where no locked
+// patch is in the way, so that the share at `at` is 1.
+std::map<PatchId, Corners> ringOf(const PatchMesh& mesh, PatchId p, const Barycentric& at) {
     const HalfedgeMesh& c = mesh.connectivity();
-    if (mesh.attributes(p).locked) return {};
-    const ColourSample now = sampleColour(mesh, p, at);
-    const glm::dvec3 change = now.alpha * (colour - now.srgb);
     std::array<std::vector<HalfedgeId>, 3> fans;
     double squares = 0;
     for (int i = 0; i < 3; ++i) {
@@ -28,21 +34,53 @@ Touched dragColour(PatchMesh& mesh, PatchId p, const Barycentric& at, glm::dvec3
     }
     // Where only far corners are free they would have to move too much.
     constexpr double kLeastSquares = .1;
-    std::map<PatchId, CornerValues> raised;
-    for (int i = 0; i < 3; ++i) {
-        const glm::dvec3 value = at[i] / std::max(squares, kLeastSquares) * change;
+    std::map<PatchId, Corners> ring;
+    for (int i = 0; i < 3; ++i)
         for (const HalfedgeId h : fans[size_t(i)]) {
             const PatchId q = c.face(h);
             const auto sides = c.sides(q);
             const auto corner = size_t(std::find(sides.begin(), sides.end(), h) - sides.begin());
-            for (int channel = 0; channel < 3; ++channel)
-                raised[q][size_t(channel)][corner] += float(value[channel]);
+            ring[q][corner] += at[i] / std::max(squares, kLeastSquares);
         }
+    return ring;
+}
+
+// The spline with a change, of R, G and B premultiplied, laid on by a share that is even at 0 and at 1: so
+// that no crease is seen where the ring ends.
+PatchSpline changed(const PatchMesh& mesh, PatchId p, const Corners& shares, glm::dvec3 change) {
+    const DomainPoints& points = SplineRefit::points();
+    const size_t n = points.size();
+    std::vector<float> now(n * kMaxChannels);
+    float* planes[kMaxChannels];
+    for (size_t c = 0; c < kMaxChannels; ++c) planes[c] = now.data() + c * n;
+    evaluateSplines(mesh.spline(p), mesh.channels(), points.x.data(), points.y.data(), n, planes);
+    float inBasis[3] = {float(change.x), float(change.y), float(change.z)};
+    float* single[3] = {&inBasis[0], &inBasis[1], &inBasis[2]};
+    fromWorking(mesh.colourBasis(), single, 1);
+    std::vector<double> values(now.begin(), now.end());
+    for (size_t i = 0; i < n; ++i) {
+        const Barycentric& b = SplineRefit::barycentrics()[i];
+        const double share = smoothStep(0, 1, b.x * shares[0] + b.y * shares[1] + b.z * shares[2]);
+        for (size_t c = 0; c < 3; ++c) values[c * n + i] += share * double(inBasis[c]);
     }
+    return SplineRefit(mesh.spline(p)).fit(values, mesh.channels());
+}
+
+}  // namespace
+
+Touched dragColour(PatchMesh& mesh, PatchId p, const Barycentric& at, glm::dvec3 colour) {
+    if (mesh.attributes(p).locked) return {};
+    const auto ring = ringOf(mesh, p, at);
     Touched touched;
-    for (const auto& [q, values] : raised) {
-        mesh.setSpline(q, withCornersRaised(mesh.spline(q), mesh.colourBasis(), values));
-        touched.patches.push_back(q);
+    if (!ring.contains(p)) return touched;
+    for (const auto& [q, shares] : ring) touched.patches.push_back(q);
+    // Once more with what the first fit left at the point itself.
+    const PatchMesh start = mesh;
+    glm::dvec3 change(0);
+    for (int pass = 0; pass < 2; ++pass) {
+        const ColourSample now = sampleColour(mesh, p, at);
+        change += now.alpha * (colour - now.srgb);
+        for (const auto& [q, shares] : ring) mesh.setSpline(q, changed(start, q, shares, change));
     }
     return touched;
 }

@@ -10,9 +10,9 @@ namespace tessera {
 
 // Gives the patch `colour` (gamma-encoded sRGB, not premultiplied) at parameters `at`, before blur. The patch
 // and those around its corners that no feature and no colour break separates from it change along: the
-// difference falls to 0 on the outer edges of this ring and is continuous across the edges inside it.
+// difference and its slope fall to 0 on the outer edges of this ring, and seams rise by less than a level.
 // Changes nothing where the patch is locked; locked patches of the ring stay, and so do the corners that they
-// share.
+// share (then the colour may not be reached).
 Touched dragColour(PatchMesh& mesh, PatchId p, const Barycentric& at, glm::dvec3 colour);
 
 // Whether `fitted` still has the patch: the same corners and sides, and colours.

@@ -105,6 +105,8 @@ struct Recolourer::State {
                                                              : PaintWeight{}) {
         if (options.featherPx > 0) border.clear();
     }
+
+    Touched apply(PatchMesh& mesh, const Recolouring& how, Precision precision) const;
 };
 
 Recolourer::Recolourer(PatchMesh start, PatchSet set, RecolourOptions options) {
@@ -117,12 +119,20 @@ Recolourer::Recolourer(Recolourer&&) noexcept = default;
 Recolourer& Recolourer::operator=(Recolourer&&) noexcept = default;
 
 Touched Recolourer::apply(PatchMesh& mesh, const Recolouring& how) const {
-    const Repaint repaint = std::visit([&](const auto& r) { return repaintOf(r, mState->mean); }, how);
+    return mState->apply(mesh, how, Precision::Full);
+}
+
+Touched Recolourer::preview(PatchMesh& mesh, const Recolouring& how) const {
+    return mState->apply(mesh, how, Precision::Quick);
+}
+
+Touched Recolourer::State::apply(PatchMesh& mesh, const Recolouring& how, Precision precision) const {
+    const Repaint repaint = std::visit([&](const auto& r) { return repaintOf(r, mean); }, how);
     Touched touched;
-    touched.patches = mState->repainter.apply(mesh, repaint);
+    touched.patches = repainter.apply(mesh, repaint, precision);
     if (touched.patches.empty()) return touched;
     const auto changed = membership(mesh, touched.patches);
-    for (const EdgeId e : mState->border) {
+    for (const EdgeId e : border) {
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
         const HalfedgeMesh& c = mesh.connectivity();
         EdgeCurve curve = mesh.curve(e);

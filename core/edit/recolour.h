@@ -65,8 +65,8 @@ struct RecolourOptions {
 Touched recolour(PatchMesh& mesh, const PatchSet& set, const Recolouring& how,
                  const RecolourOptions& options = {});
 
-// The same for a gesture: what depends on the start state alone is computed once. Every apply() changes a
-// mesh that equals the start.
+// The same for a gesture: what depends on the start state alone is computed once. Both calls change a mesh
+// that equals the start; one call at a time.
 class Recolourer {
   public:
     Recolourer(PatchMesh start, PatchSet set, RecolourOptions options = {});
@@ -74,7 +74,11 @@ class Recolourer {
     Recolourer(Recolourer&&) noexcept;
     Recolourer& operator=(Recolourer&&) noexcept;
 
+    // What recolour() does.
     Touched apply(PatchMesh& mesh, const Recolouring& how) const;
+    // Nearly that, in a small part of the time: for the frames before the last one. Colours are some levels
+    // off where a patch has many of them and the edit is not affine.
+    Touched preview(PatchMesh& mesh, const Recolouring& how) const;
 
   private:
     struct State;

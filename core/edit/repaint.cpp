@@ -14,7 +14,7 @@ namespace tessera {
 namespace {
 
 // What an affine change in the place of a curved one may be off, on a few points: less than a refit may.
-constexpr double kLinearMean = .15 / 255, kLinearMost = .6 / 255;
+constexpr double kLinearMean = .3 / 255, kLinearMost = 1.2 / 255;
 // Smaller changes are none.
 constexpr double kNoChange = 1e-4 / 255;
 
@@ -90,13 +90,19 @@ struct Repainter::Patch {
         refit.emplace(mesh.spline(id));
     }
 
-    // The tangent of a repainting at the mean colour, where it follows it at all probes.
-    std::optional<AffineColour> linearized(const Repaint& repaint) const {
+    // The tangent of a repainting at the mean colour.
+    AffineColour tangent(const Repaint& repaint) const {
         AffineColour change;
         const glm::dvec3 at = repaint.function(mean);
         for (int c = 0; c < 3; ++c)
             change.matrix[c] = (repaint.function(beside[c]) - at) / (beside[c].srgb[c] - mean.srgb[c]);
         change.offset = at - change.matrix * mean.srgb;
+        return change;
+    }
+
+    // The same, where it follows the repainting at all probes.
+    std::optional<AffineColour> linearized(const Repaint& repaint) const {
+        const AffineColour change = tangent(repaint);
         double sum = 0;
         for (const PaintedColour& probe : probes) {
             const glm::dvec3 off = glm::abs(change(probe.whole) - painted(repaint, probe));
@@ -126,7 +132,8 @@ Repainter::Repainter(PatchMesh start, PatchSet patches, PaintWeight weight)
     });
 }
 
-std::optional<PatchSpline> Repainter::refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint) {
+std::optional<PatchSpline> Repainter::refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
+                                               Precision precision) {
     patch.sample(mesh);
     const size_t n = patch.colours.size();
     std::vector<float> planes(n * kMaxChannels);
@@ -143,10 +150,11 @@ std::optional<PatchSpline> Repainter::refitted(const PatchMesh& mesh, Patch& pat
     for (size_t c = 0; c < kMaxChannels; ++c) pointers[c] = planes.data() + c * n;
     fromWorking(mesh.colourBasis(), pointers, n);
     const std::vector<double> values(planes.begin(), planes.end());
-    return patch.refit->fit(values, mesh.channels());
+    return patch.refit->fit(values, mesh.channels(), precision == Precision::Full);
 }
 
-std::optional<PatchSpline> Repainter::repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint) {
+std::optional<PatchSpline> Repainter::repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
+                                                Precision precision) {
     const auto mixedBy = [&](const AffineColour& change) -> std::optional<PatchSpline> {
         if (isIdentity(change)) return std::nullopt;
         return mixed(mesh.spline(patch.id), mesh.channels(), mesh.colourBasis(), change);
@@ -158,16 +166,17 @@ std::optional<PatchSpline> Repainter::repainted(const PatchMesh& mesh, Patch& pa
     // With alpha a tangent of colours that are not premultiplied says nothing of those that are.
     if (patch.even && !repaint.dependsOnPoint && mesh.channels() == 3) {
         patch.probe(mesh);
+        if (precision == Precision::Quick) return mixedBy(patch.tangent(repaint));
         if (const auto change = patch.linearized(repaint)) return mixedBy(*change);
     }
-    return refitted(mesh, patch, repaint);
+    return refitted(mesh, patch, repaint, precision);
 }
 
-PatchSet Repainter::apply(PatchMesh& mesh, const Repaint& repaint) const {
+PatchSet Repainter::apply(PatchMesh& mesh, const Repaint& repaint, Precision precision) const {
     if (repaint.affine && isIdentity(*repaint.affine)) return {};
     std::vector<std::optional<PatchSpline>> splines(mPatches.size());
     parallelFor(mPatches.size(), 16, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) splines[i] = repainted(mStart, (*mCache)[i], repaint);
+        for (size_t i = begin; i < end; ++i) splines[i] = repainted(mStart, (*mCache)[i], repaint, precision);
     });
     PatchSet changed;
     for (size_t i = 0; i < mPatches.size(); ++i) {

@@ -36,6 +36,9 @@ struct Repaint {
 // How much of a repainting a place gets, 0..1; continuous. Thread-safe.
 using PaintWeight = std::function<double(glm::dvec2 point)>;
 
+// Quick: for a frame of a gesture. Whatever depends on colour alone is made affine, and no spline gets sites.
+enum class Precision { Full, Quick };
+
 // Repaints the patches of one state of a mesh, any number of times.
 class Repainter {
   public:
@@ -46,12 +49,14 @@ class Repainter {
 
     // Repaints a mesh that equals the start; the patches that changed. Exact where the repainting is affine
     // and the weight 1 all over a patch; else fitted (SplineRefit), or made affine where that is as good.
-    PatchSet apply(PatchMesh& mesh, const Repaint& repaint) const;
+    PatchSet apply(PatchMesh& mesh, const Repaint& repaint, Precision precision = Precision::Full) const;
 
   private:
     struct Patch;
-    static std::optional<PatchSpline> repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
-    static std::optional<PatchSpline> refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
+    static std::optional<PatchSpline> repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
+                                                Precision precision);
+    static std::optional<PatchSpline> refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
+                                               Precision precision);
 
     PatchMesh mStart;
     PatchSet mPatches;

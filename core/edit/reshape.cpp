@@ -89,27 +89,29 @@ double largestShare(double lengthPx, Good&& good) {
 
 struct ShapeDrag::State {
     Deformation deformation;
-    std::optional<PatchId> blocking;  // found last
-
     State(PatchMesh start, std::span<const ControlPointRef> points, std::vector<double> weights)
         : deformation(std::move(start), points, std::move(weights)) {}
 
     std::optional<PatchId> tryOffset(PatchMesh& mesh, glm::dvec2 offset, bool breakJoins) const {
-        return deformation.apply(mesh, std::span(&offset, 1), breakJoins);
+        return deformation.probe(mesh, std::span(&offset, 1), breakJoins);
     }
     glm::dvec2 slide(PatchMesh& mesh, glm::dvec2 from, glm::dvec2 goal, bool breakJoins) const;
 };
 
 // From a place at the limit on toward the goal, in the direction that brings it nearest, some times over.
 glm::dvec2 ShapeDrag::State::slide(PatchMesh& mesh, glm::dvec2 from, glm::dvec2 goal, bool breakJoins) const {
-    constexpr int kTurns = 4;
-    constexpr double kDegrees = 10, kWorthPx = .02;
-    for (int turn = 0; turn < kTurns; ++turn) {
+    // With many patches at the limit a finer search would take longer than a frame.
+    constexpr size_t kMany = 60;
+    const bool coarse = deformation.looseCount() > kMany;
+    const int turns = coarse ? 1 : 4, directions = coarse ? 3 : 8;
+    const double degrees = 80.0 / directions;
+    constexpr double kWorthPx = .02;
+    for (int turn = 0; turn < turns; ++turn) {
         const glm::dvec2 rest = goal - from;
         glm::dvec2 best = from;
-        for (int k = 1; k <= 8; ++k)
+        for (int k = 1; k <= directions; ++k)
             for (const double side : {-1.0, 1.0}) {
-                const double angle = glm::radians(side * kDegrees * k);
+                const double angle = glm::radians(side * degrees * k);
                 const double cosine = std::cos(angle), sine = std::sin(angle);
                 // As far as this direction leads nearer to the goal.
                 const glm::dvec2 way =
@@ -164,9 +166,12 @@ DragResult ShapeDrag::drag(PatchMesh& mesh, glm::dvec2 offset, bool breakJoins) 
         if (folded) result.blocking = folded;
         return !folded;
     });
-    if (result.fraction == 1) return {result.touched, 1, std::nullopt};
-    const glm::dvec2 reached = mState->slide(mesh, result.fraction * offset, offset, breakJoins);
-    if (mState->tryOffset(mesh, reached, breakJoins)) mesh = deformation.start();
+    glm::dvec2 reached = offset;
+    if (result.fraction == 1)
+        result.blocking.reset();
+    else
+        reached = mState->slide(mesh, result.fraction * offset, offset, breakJoins);
+    if (deformation.apply(mesh, std::span(&reached, 1), breakJoins)) mesh = deformation.start();
     return result;
 }
 

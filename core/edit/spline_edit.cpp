@@ -242,13 +242,13 @@ const DomainPoints& SplineRefit::points() {
     return all;
 }
 
-PatchSpline SplineRefit::fit(std::span<const double> values, int channels) const {
+PatchSpline SplineRefit::fit(std::span<const double> values, int channels, bool mayGetSites) const {
     const Eigen::Map<const MatrixXd> targets(values.data(), kPoints, channels);
     const auto deviation = [&](const MatrixXd& left) { return left.cwiseAbs().mean(); };
     const Factorized& first = mSystem->factorized();
     MatrixXd factors = first.solve(targets);
     MatrixXd left = targets - first.functions * factors;
-    if (deviation(left) <= kRefitTolerance)
+    if (!mayGetSites || deviation(left) <= kRefitTolerance)
         return mSystem->basis ? newtonSpline(*mSystem->basis, factors) : defaultSpline(factors);
 
     std::vector<uint8_t> sites = mSystem->basis ? mSystem->sites : usualSites();

@@ -44,8 +44,9 @@ class SplineRefit {
     static const DomainPoints& points();
 
     // values[c * points().size() + i] of channel c at point i, in the basis of the spline. Where the mean
-    // deviation at the points is more than kRefitTolerance the spline gets further sites. Thread-safe.
-    PatchSpline fit(std::span<const double> values, int channels) const;
+    // deviation at the points is more than kRefitTolerance the spline gets further sites, if it may.
+    // Thread-safe.
+    PatchSpline fit(std::span<const double> values, int channels, bool mayGetSites = true) const;
 
   private:
     struct System;
@@ -55,6 +56,6 @@ class SplineRefit {
 // The places among the sites that are nearest to the default centres, the corners first.
 std::vector<uint8_t> usualSites();
 
-constexpr double kRefitTolerance = .35 / 255;
+constexpr double kRefitTolerance = .5 / 255;
 
 }  // namespace tessera

@@ -20,6 +20,10 @@ namespace {
 constexpr int kTileWidth = 128;
 constexpr int kTileHeight = 64;
 
+bool leftOut(const PatchAttributes& a, const RasterizeOptions& options) {
+    return a.cutOut || (a.hidden && !options.showHidden);
+}
+
 // Pixels of one patch with their parameters, as the runs that they came in.
 struct Batch {
     static constexpr size_t kSize = PatchInverse::kMaxBatch;
@@ -139,7 +143,9 @@ void shade(const PatchMesh& mesh, const EdgeBlur& blur, const PixelGrid& grid, c
     evaluateSplines(mesh.spline(batch.patch), mesh.channels(), x, y, batch.count, out);
     if (blur.inReach(batch.patch)) blurBatch(mesh, blur, grid, batch, out);
     toWorking(mesh.colourBasis(), out, batch.count);
-    for (int c = 0; c < mesh.channels(); ++c) {
+    if (image.channels() > mesh.channels())
+        std::fill_n(colour[mesh.channels()], batch.count, 1.0F);  // opaque beside what is left out
+    for (int c = 0; c < image.channels(); ++c) {
         const float* from = colour[c];
         float* plane = image.plane(c).data();
         for (const PixelRun& run : batch.runs) {
@@ -169,7 +175,10 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
                         Progress* progress) {
     TESSERA_CHECK(options.samples == 1 || options.samples == 4 || options.samples == 16);
     if (progress && progress->stopRequested()) return stopped();
-    Image image(view.width, view.height, mesh.channels());
+    bool anyLeftOut = false;
+    mesh.forEachPatch([&](PatchId p) { anyLeftOut = anyLeftOut || leftOut(mesh.attributes(p), options); });
+    const int channels = anyLeftOut ? kMaxChannels : mesh.channels();
+    Image image(view.width, view.height, channels);
     // Sub-pixel centres are the pixel centres of the view n times as large.
     const int n = options.samples == 1 ? 1 : options.samples == 4 ? 2 : 4;
     View fine = view;
@@ -186,12 +195,15 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
         for (size_t i = begin; i < end && !stop; ++i) {
             const PixelRect& rect = tiles[i].rect;
             if (n == 1) {
-                processTile(mesh, scan, tiles[i], batch,
-                            [&](const Batch& b) { shade(mesh, blur, scan.grid(), b, image, 0, 0); });
-            } else {
-                Image part(rect.x1 - rect.x0, rect.y1 - rect.y0, mesh.channels());
                 processTile(mesh, scan, tiles[i], batch, [&](const Batch& b) {
-                    shade(mesh, blur, scan.grid(), b, part, rect.x0, rect.y0);
+                    if (!leftOut(mesh.attributes(b.patch), options))
+                        shade(mesh, blur, scan.grid(), b, image, 0, 0);
+                });
+            } else {
+                Image part(rect.x1 - rect.x0, rect.y1 - rect.y0, channels);
+                processTile(mesh, scan, tiles[i], batch, [&](const Batch& b) {
+                    if (!leftOut(mesh.attributes(b.patch), options))
+                        shade(mesh, blur, scan.grid(), b, part, rect.x0, rect.y0);
                 });
                 average(part, n, image, rect.x0 / n, rect.y0 / n);
             }

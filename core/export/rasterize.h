@@ -20,6 +20,9 @@ struct PixelOwner {
 struct RasterizeOptions {
     int samples = 1;     // per pixel: 1 (its centre), 4 or 16 (a regular grid, averaged)
     double sharpen = 1;  // multiplies the blur of every feature; 0 draws hard features
+    // Hidden patches are drawn as any other, or left out as those that are cut out always are. Where any is
+    // left out the picture has an alpha channel, and 0 in its place.
+    bool showHidden = true;
 };
 
 // (a) Section 5 as it stands: every patch is subdivided 4-way until a piece's bounding box is smaller than an

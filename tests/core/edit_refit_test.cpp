@@ -13,8 +13,8 @@
 #include "core/edit/reshape.h"
 #include "core/edit/snap.h"
 #include "core/export/rasterize.h"
-#include "tests/support/painted_image.h"
 #include "tests/support/edit_meshes.h"
+#include "tests/support/painted_image.h"
 #include "tests/support/test_meshes.h"
 
 namespace tessera {

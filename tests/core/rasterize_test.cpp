@@ -300,5 +300,31 @@ TEST_F(RasterizeTest, StopsAndReportsProgress) {
     EXPECT_EQ(result.error().code, ErrorCode::Stopped);
 }
 
+TEST(Rasterize, LeavesOutWhatIsCutOutOrHidden) {
+    PatchMesh mesh = testing::curvedMesh(60, 40, 3, 2, 8);
+    const View view = wholePicture(mesh, {2, 2});
+    const auto whole = rasterize(mesh, view);
+    mesh.setAttributes(PatchId(3), {true, false, false});
+    EXPECT_EQ(*rasterize(mesh, view), *whole);
+    mesh.setAttributes(PatchId(4), {false, false, true});
+    const auto owners = locatePixels(mesh, view);
+    for (const bool showHidden : {true, false}) {
+        RasterizeOptions options;
+        options.showHidden = showHidden;
+        const auto image = rasterize(mesh, view, options);
+        ASSERT_EQ(image->channels(), 4);
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                const PatchId p = owners[size_t(y) * size_t(view.width) + size_t(x)].patch;
+                const bool out = p == PatchId(4) || (p == PatchId(3) && !showHidden);
+                ASSERT_EQ(image->at(x, y, 3), out ? 0 : 1);
+                for (int c = 0; c < 3; ++c) ASSERT_EQ(image->at(x, y, c), out ? 0 : whole->at(x, y, c));
+            }
+    }
+    RasterizeOptions four;
+    four.samples = 4;
+    EXPECT_EQ(rasterize(mesh, view, four)->channels(), 4);
+}
+
 }  // namespace
 }  // namespace tessera
