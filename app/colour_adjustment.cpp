@@ -29,15 +29,14 @@ void ColourAdjustment::startFrom(const Recolouring& kind, const RecolourOptions&
     mFeatherPx = options.featherPx;
     mTouched = {};
     mValues = {{mSession->revision(), neutral(kind)}};
-    mRecolourer.emplace(mBase, mPatches, options);
 }
 
 bool ColourAdjustment::begin(const QString& text, const Recolouring& kind, const RecolourOptions& options) {
     if (!mSession || mSession->editing() || mPatches.empty()) return false;
     const auto now = value();
     if (!now || now->index() != kind.index() || mFeatherPx != options.featherPx) startFrom(kind, options);
-    mShown.reset();
     mGesture.emplace(*mSession, text);
+    mRecolourer.emplace(mBase, mPatches, options);
     return true;
 }
 
@@ -52,16 +51,22 @@ void ColourAdjustment::show(const Recolouring& how) {
 }
 
 void ColourAdjustment::commit() {
-    if (!active()) return mGesture.reset();
+    if (!active()) return cancel();
     const Touched touched = mGesture->touched();
     // Where the gesture ended as it began there is no step.
     const uint64_t before = mSession->revision();
-    const std::optional<Recolouring> shown = std::exchange(mShown, {});
+    const std::optional<Recolouring> shown = mShown;
     mGesture->commit();
-    mGesture.reset();
+    cancel();
     if (!mSession || mSession->revision() == before || !shown) return;
     mTouched = touched;
     mValues.insert_or_assign(mSession->revision(), *shown);
+}
+
+void ColourAdjustment::cancel() {
+    mGesture.reset();
+    mRecolourer.reset();
+    mShown.reset();
 }
 
 }  // namespace tessera

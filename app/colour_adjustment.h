@@ -30,7 +30,7 @@ class ColourAdjustment {
     bool active() const { return mGesture.has_value() && mGesture->open(); }
     void show(const Recolouring& how);
     void commit();
-    void cancel() { mGesture.reset(); }
+    void cancel();
 
   private:
     void startFrom(const Recolouring& kind, const RecolourOptions& options);
@@ -41,6 +41,7 @@ class ColourAdjustment {
     double mFeatherPx = 0;
     Touched mTouched;                         // by all steps since the base
     std::map<uint64_t, Recolouring> mValues;  // by revision, the base's too; of one kind
+    // Of the gesture under way. A recolourer of many patches is large: it does not outlive its gesture.
     std::optional<Recolourer> mRecolourer;
     std::optional<EditSession> mGesture;
     std::optional<Recolouring> mShown;

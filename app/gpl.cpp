@@ -15,16 +15,13 @@ namespace {
 
 const char* const kMagic = "GIMP Palette";
 
-tl::unexpected<Error> unreadable(const QString& why) {
-    return failure(ErrorCode::CannotRead, why.toStdString());
+tl::unexpected<Error> unreadable(const QString& source, const QString& why) {
+    return failure(ErrorCode::CannotRead,
+                   QObject::tr("cannot read the swatches of %1: %2").arg(source, why).toStdString());
 }
 
-QString oneLine(const QString& name) {
-    return name.simplified();
-}
-
-// "  R   G   B  name", the name optional.
-Result<Swatch> parseSwatch(const QString& line, const QString& place) {
+// "  R   G   B  name", the name optional; else why it cannot be read.
+tl::expected<Swatch, QString> parseSwatch(const QString& line) {
     Swatch swatch;
     qsizetype at = 0;
     for (int c = 0; c < 3; ++c) {
@@ -34,10 +31,8 @@ Result<Swatch> parseSwatch(const QString& line, const QString& place) {
         bool isNumber = false;
         const int value = line.mid(begin, at - begin).toInt(&isNumber);
         if (!isNumber)
-            return unreadable(
-                QObject::tr("%1: there should be three numbers, red, green and blue").arg(place));
-        if (value < 0 || value > 255)
-            return unreadable(QObject::tr("%1: %2 is not in 0..255").arg(place).arg(value));
+            return tl::unexpected(QObject::tr("there should be three numbers, red, green and blue"));
+        if (value < 0 || value > 255) return tl::unexpected(QObject::tr("%1 is not in 0..255").arg(value));
         swatch.colour[c] = value / 255.;
     }
     swatch.name = line.mid(at).trimmed();
@@ -48,11 +43,10 @@ Result<Swatch> parseSwatch(const QString& line, const QString& place) {
 
 Result<SwatchList> parseGpl(const QByteArray& text, const QString& source) {
     if (text.size() > kMaxGplBytes)
-        return unreadable(QObject::tr("%1 is too large for a list of swatches").arg(source));
+        return unreadable(source, QObject::tr("the file is too large for a list of swatches"));
     const QStringList lines = QString::fromUtf8(text).split('\n');
     if (lines.first().trimmed() != kMagic)
-        return unreadable(
-            QObject::tr("%1 is no GIMP palette: it does not begin with \"%2\"").arg(source, QString(kMagic)));
+        return unreadable(source, QObject::tr("it does not begin with \"%1\"").arg(kMagic));
     SwatchList list;
     bool inHeader = true;
     for (qsizetype i = 1; i < lines.size(); ++i) {
@@ -64,20 +58,20 @@ Result<SwatchList> parseGpl(const QByteArray& text, const QString& source) {
         }
         if (inHeader && line.startsWith("Columns:")) continue;
         inHeader = false;
-        const Result<Swatch> swatch = parseSwatch(line, QObject::tr("%1, line %2").arg(source).arg(i + 1));
-        if (!swatch) return tl::unexpected<Error>(swatch.error());
+        const auto swatch = parseSwatch(line);
+        if (!swatch) return unreadable(source, QObject::tr("line %1: %2").arg(i + 1).arg(swatch.error()));
         list.swatches.push_back(*swatch);
     }
     return list;
 }
 
 QByteArray gplText(const SwatchList& list) {
-    QString text = QString("%1\nName: %2\n#\n").arg(kMagic, oneLine(list.name));
+    QString text = QString("%1\nName: %2\n#\n").arg(kMagic, list.name.simplified());
     for (const Swatch& swatch : list.swatches) {
         for (int c = 0; c < 3; ++c)
             text += QString("%1 ").arg(std::lround(255 * std::clamp(swatch.colour[c], 0., 1.)), 3);
         text.back() = '\t';
-        text += oneLine(swatch.name) + '\n';
+        text += swatch.name.simplified() + '\n';
     }
     return text.toUtf8();
 }
@@ -85,8 +79,7 @@ QByteArray gplText(const SwatchList& list) {
 Result<SwatchList> readGpl(const QString& path) {
     QFile file(path);
     const QString name = QFileInfo(path).fileName();
-    if (!file.open(QIODevice::ReadOnly))
-        return unreadable(QObject::tr("%1 cannot be opened: %2").arg(name, file.errorString()));
+    if (!file.open(QIODevice::ReadOnly)) return unreadable(name, file.errorString());
     return parseGpl(file.read(kMaxGplBytes + 1), name);
 }
 

@@ -8,6 +8,7 @@
 #include <QLineEdit>
 #include <QListView>
 #include <QPushButton>
+#include <QShortcut>
 #include <QSignalSpy>
 #include <QSpinBox>
 #include <QTemporaryDir>
@@ -213,6 +214,40 @@ TEST_F(RecolourPanelTest, AnotherSelectionBeginsAnew) {
     dragTo(slider("hue"), 60);
     release(slider("hue"));
     EXPECT_EQ(colourOf(column(0)[0]), first);
+}
+
+TEST_F(RecolourPanelTest, AnotherChangeBeginsAnew) {
+    select(column(0));
+    dragTo(slider("hue"), 60);
+    release(slider("hue"));
+    const auto paint = [](PatchMesh& m) { return testing::paint(m, column(0)[0], .5f); };
+    ASSERT_TRUE(applyEdit(*session, "Brush", paint));
+    QTest::qWait(5);
+    EXPECT_EQ(slider("hue")->value(), 0);
+    dragTo(slider("lightness"), 20);
+    release(slider("lightness"));
+    EXPECT_NEAR(toOklch(colourOf(column(0)[0])).x - toOklch(glm::dvec3(.5)).x,
+                slider("lightness")->value() / 100., .01)
+        << "what was painted is what it begins with";
+    history().undo();
+    history().undo();
+    QTest::qWait(5);
+    EXPECT_EQ(history().index(), 1);
+    EXPECT_EQ(slider("hue")->value(), 0) << "it has been taken up elsewhere since";
+}
+
+TEST_F(RecolourPanelTest, KeysOfASliderAreNoShortcuts) {
+    select(column(0));
+    QShortcut remove(Qt::Key_Delete, &panel);
+    const QSignalSpy removed(&remove, &QShortcut::activated);
+    dragTo(slider("hue"), 60);
+    release(slider("hue"));
+    QTest::keyClick(slider("hue"), Qt::Key_Delete);
+    EXPECT_EQ(removed.count(), 0);
+    EXPECT_EQ(slider("hue")->value(), 0);
+    child<QPushButton>(panel, "hide")->setFocus();
+    QTest::keyClick(child<QPushButton>(panel, "hide"), Qt::Key_Delete);
+    EXPECT_EQ(removed.count(), 1) << "elsewhere it is the window's";
 }
 
 TEST_F(RecolourPanelTest, AClickAloneIsNoStepAndEscapeTakesBack) {
@@ -660,7 +695,7 @@ TEST_F(HistoryPanelTest, AClickGoesToAState) {
 
 TEST_F(HistoryPanelTest, FollowsTheDocument) {
     auto* memory = child<QLabel>(panel, "memory");
-    EXPECT_TRUE(memory->text().startsWith("3 step")) << memory->text().toStdString();
+    EXPECT_TRUE(memory->text().startsWith("Steps: 3, ")) << memory->text().toStdString();
     history().undo();
     EXPECT_EQ(list()->currentIndex().row(), 2);
     ASSERT_TRUE(applyEdit(*session, "New", [](PatchMesh& m) { return testing::paint(m, PatchId(9), 0); }));

@@ -19,6 +19,19 @@ constexpr double kHandle = 7;  // its radius
 constexpr double kTrack = 4, kGradientTrack = 12;
 constexpr int kNotch = 120;  // of a wheel, as Qt counts
 
+// Between ground and text.
+QColor quiet(const QPalette& palette, double share) {
+    QColor colour = palette.color(QPalette::Active, QPalette::WindowText);
+    colour.setAlphaF(float(share));
+    return colour;
+}
+
+// Lighter than the ground, in both themes.
+QColor handleColour(const QPalette& palette) {
+    const QColor button = palette.color(QPalette::Button);
+    return button.lightnessF() < .5f ? button.lighter(260) : button;
+}
+
 }  // namespace
 
 GestureSlider::GestureSlider(QWidget* parent) : QSlider(Qt::Horizontal, parent) {
@@ -156,6 +169,20 @@ std::optional<int> GestureSlider::keyTarget(int key) const {
     }
 }
 
+bool GestureSlider::event(QEvent* event) {
+    // The keys that it uses are not for the window's shortcuts.
+    if (event->type() == QEvent::ShortcutOverride) {
+        const auto* key = static_cast<QKeyEvent*>(event);
+        const bool isPlain = !(key->modifiers() & ~Qt::KeypadModifier);
+        const bool cancels = key->key() == Qt::Key_Escape && mUnderWay;
+        if (isPlain && (cancels || keyTarget(key->key()))) {
+            event->accept();
+            return true;
+        }
+    }
+    return QSlider::event(event);
+}
+
 void GestureSlider::keyPressEvent(QKeyEvent* event) {
     if (event->key() == Qt::Key_Escape && mUnderWay) return cancel();
     const auto target = keyTarget(event->key());
@@ -197,7 +224,7 @@ void GestureSlider::paintEvent(QPaintEvent*) {
         painter.drawRoundedRect(bar.adjusted(-kHandle + 1.5, .5, kHandle - 1.5, -.5), 3, 3);
     } else {
         painter.setPen(Qt::NoPen);
-        painter.setBrush(palette().color(isEnabled() ? QPalette::Mid : QPalette::Midlight));
+        painter.setBrush(quiet(palette(), isEnabled() ? .3 : .12));
         painter.drawRoundedRect(bar, 2, 2);
         if (isEnabled()) {
             const double from = mNeutral ? xOf(*mNeutral) : bar.left();
@@ -208,7 +235,7 @@ void GestureSlider::paintEvent(QPaintEvent*) {
     }
     const QPointF centre(handleX, bar.center().y());
     painter.setPen(QPen(hasFocus() ? palette().color(QPalette::Highlight) : line, hasFocus() ? 2 : 1));
-    painter.setBrush(palette().color(isEnabled() ? QPalette::Button : QPalette::Window));
+    painter.setBrush(isEnabled() ? handleColour(palette()) : palette().color(QPalette::Window));
     painter.drawEllipse(centre, kHandle - 1, kHandle - 1);
 }
 

@@ -40,6 +40,7 @@ class GestureSlider : public QSlider {
     void cancelled();  // the value is again what it was before
 
   protected:
+    bool event(QEvent* event) override;
     void paintEvent(QPaintEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;

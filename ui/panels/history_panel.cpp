@@ -103,9 +103,12 @@ void HistoryPanel::showMemory() {
     if (!mSession) return mMemory->setText(tr("No document"));
     const History& history = mSession->history();
     const QLocale locale;
-    mMemory->setText(tr("%n step(s), %1 of %2", nullptr, history.count())
-                         .arg(locale.formattedDataSize(qint64(history.bytes()), 1),
-                              locale.formattedDataSize(qint64(history.memoryLimit()), 0)));
+    const auto size = [&](size_t bytes, int decimals) {
+        return locale.formattedDataSize(qint64(bytes), decimals, QLocale::DataSizeTraditionalFormat);
+    };
+    mMemory->setText(
+        tr("Steps: %1, %2 of %3")
+            .arg(locale.toString(history.count()), size(history.bytes(), 1), size(history.memoryLimit(), 0)));
 }
 
 }  // namespace tessera

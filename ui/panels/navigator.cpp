@@ -8,13 +8,12 @@
 #include <QMouseEvent>
 #include <QPainter>
 #include <QPainterPath>
-#include <QSignalBlocker>
-#include <QSlider>
 #include <QVBoxLayout>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
 
+#include "ui/panels/gesture_slider.h"
 #include "ui/panels/panel_parts.h"
 #include "ui/view_transform.h"
 
@@ -40,13 +39,13 @@ QString percentText(double scale) {
 }  // namespace
 
 Navigator::Navigator(QWidget* parent)
-    : QWidget(parent), mView(new NavigatorView), mZoom(new QSlider(Qt::Horizontal)), mPercent(new QLabel) {
+    : QWidget(parent), mView(new NavigatorView), mZoom(new GestureSlider), mPercent(new QLabel) {
     setAccessibleName(tr("Navigator"));
     mZoom->setObjectName("zoom");
     mZoom->setAccessibleName(tr("Zoom"));
     mZoom->setToolTip(tr("Zoom"));
-    mZoom->setFocusPolicy(Qt::TabFocus);
-    mZoom->setRange(tickOf(ViewTransform::kMinScale), tickOf(ViewTransform::kMaxScale));
+    // A tick beyond both ends, which request() cuts: they can be reached.
+    mZoom->setRange(tickOf(ViewTransform::kMinScale) - 1, tickOf(ViewTransform::kMaxScale) + 1);
     mZoom->setSingleStep(kTicksPerOctave / 4);
     mZoom->setPageStep(kTicksPerOctave);
     mPercent->setMinimumWidth(
@@ -59,15 +58,10 @@ Navigator::Navigator(QWidget* parent)
     column->addWidget(mView, 1);
     column->addLayout(row);
     connect(mView, &NavigatorView::moveRequested, this, &Navigator::moveRequested);
-    connect(mView, &NavigatorView::zoomStepRequested, this, [this](double notches) {
-        mZoom->setValue(mZoom->value() + int(std::lround(notches * kOctavesPerNotch * kTicksPerOctave)));
-    });
-    connect(mZoom, &QSlider::valueChanged, this, [this](int tick) {
-        const double scale = std::clamp(std::exp2(double(tick) / kTicksPerOctave), ViewTransform::kMinScale,
-                                        ViewTransform::kMaxScale);
-        mPercent->setText(percentText(scale));
-        emit zoomRequested(scale);
-    });
+    connect(mView, &NavigatorView::zoomStepRequested, this,
+            [this](double notches) { request(mScale * std::exp2(notches * kOctavesPerNotch)); });
+    connect(mZoom, &GestureSlider::moved, this,
+            [this](int tick) { request(std::exp2(double(tick) / kTicksPerOctave)); });
     setScale(1);
     setPicture({});
 }
@@ -83,8 +77,13 @@ void Navigator::setVisibleRect(const QRectF& imagePx, QSizeF pictureSize) {
     mView->setVisibleRect(imagePx, pictureSize);
 }
 
+void Navigator::request(double scale) {
+    setScale(std::clamp(scale, ViewTransform::kMinScale, ViewTransform::kMaxScale));
+    emit zoomRequested(mScale);
+}
+
 void Navigator::setScale(double scale) {
-    const QSignalBlocker quiet(mZoom);
+    mScale = scale;
     mZoom->setValue(tickOf(scale));
     mPercent->setText(percentText(scale));
 }

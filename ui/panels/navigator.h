@@ -5,10 +5,10 @@
 #include <QWidget>
 
 class QLabel;
-class QSlider;
 
 namespace tessera {
 
+class GestureSlider;
 class NavigatorView;
 
 class Navigator : public QWidget {
@@ -29,9 +29,12 @@ class Navigator : public QWidget {
     void zoomRequested(double scale);
 
   private:
+    void request(double scale);
+
     NavigatorView* mView;
-    QSlider* mZoom;
+    GestureSlider* mZoom;
     QLabel* mPercent;
+    double mScale = 1;
 };
 
 // The picture with the frame.

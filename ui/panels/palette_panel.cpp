@@ -105,7 +105,7 @@ QWidget* PalettePanel::makeSwatchPart() {
     column->addLayout(mSwatches);
     column->addWidget(mSwatchHint = panelHint(tr(
                           "Colours that you keep, for all documents. A click makes one the tools' colour.")));
-    auto* add = panelButton(tr("Keep colour"), tr("Keep the tools' colour as a swatch"), "keep");
+    auto* add = panelButton(tr("Keep"), tr("Keep the tools' colour as a swatch"), "keep");
     auto* import = panelButton(tr("Import…"), tr("Add the swatches of a .gpl file"), "import");
     auto* save = panelButton(tr("Export…"), tr("Write the swatches to a .gpl file"), "export");
     auto* row = new QGridLayout;
@@ -203,8 +203,8 @@ SwatchButton* PalettePanel::makeEntry(int entry) {
     button->setColour(toQColor(e.colour));
     button->setCaption(locale.toString(qulonglong(e.patches)));
     button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    button->setAccessibleName(tr("Dominant colour %1, %n patch(es)", nullptr, int(e.patches)).arg(hex));
-    button->setToolTip(tr("%1: %n patch(es), %2 % of the picture", nullptr, int(e.patches)).arg(hex, share));
+    button->setAccessibleName(tr("Dominant colour %1, patches: %2").arg(hex).arg(e.patches));
+    button->setToolTip(tr("%1, %2 % of the picture").arg(hex, share));
     connect(button, &SwatchButton::hovered, this, [this, entry](bool on) { highlight(on ? entry : -1); });
     connect(button, &SwatchButton::picked, this,
             [this, entry](Qt::KeyboardModifiers modifiers) { select(entry, modifiers); });

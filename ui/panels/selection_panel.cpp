@@ -35,6 +35,18 @@ StoredList::StoredList(QWidget* parent) : QListWidget(parent) {
     setToolTip(tr("Click to select; Shift adds, Alt subtracts. F2 renames, Delete removes"));
 }
 
+bool StoredList::event(QEvent* event) {
+    // The keys that it uses are not for the window's shortcuts.
+    if (event->type() == QEvent::ShortcutOverride && currentItem()) {
+        const int key = static_cast<QKeyEvent*>(event)->key();
+        if (key == Qt::Key_Delete || key == Qt::Key_Backspace || key == Qt::Key_F2) {
+            event->accept();
+            return true;
+        }
+    }
+    return QListWidget::event(event);
+}
+
 void StoredList::mousePressEvent(QMouseEvent* event) {
     const QListWidgetItem* item = itemAt(event->position().toPoint());
     const QString name = item ? item->data(kNameRole).toString() : QString();
@@ -173,8 +185,8 @@ void SelectionPanel::refresh() {
         parts += tr("%1 of %2 patches")
                      .arg(locale.toString(qulonglong(selection.patches().size())),
                           locale.toString(qulonglong(mSession->document().mesh.patchCount())));
-    if (!selection.points().empty()) parts += tr("%n point(s)", nullptr, int(selection.points().size()));
-    if (!selection.curves().empty()) parts += tr("%n curve(s)", nullptr, int(selection.curves().size()));
+    if (!selection.points().empty()) parts += tr("points: %1").arg(selection.points().size());
+    if (!selection.curves().empty()) parts += tr("curves: %1").arg(selection.curves().size());
     mCounts->setText(parts.isEmpty() ? tr("Nothing selected") : parts.join(tr(", ")));
 }
 
@@ -188,7 +200,7 @@ void SelectionPanel::fillStored() {
             auto* item = new QListWidgetItem(name, mStored);
             item->setData(kNameRole, name);
             item->setFlags(item->flags() | Qt::ItemIsEditable);
-            item->setToolTip(tr("%n patch(es)", nullptr, int(stored.patches.size())));
+            item->setToolTip(tr("Patches: %1").arg(stored.patches.size()));
             if (name == current) mStored->setCurrentItem(item);
         }
     mStored->setVisible(mStored->count() > 0);

@@ -29,6 +29,7 @@ class StoredList : public QListWidget {
     void removed(const QString& name);
 
   protected:
+    bool event(QEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
 };
@@ -41,7 +42,7 @@ class SelectionPanel : public QWidget {
 
     // Null for none.
     void setSession(DocumentSession* session);
-    // Whose wand says what is similar.
+    // Whose wand says what is similar; outlives the panel.
     void setToolOptions(const ToolManager& tools) { mTools = &tools; }
 
   signals:
