@@ -62,13 +62,12 @@ class GlDrawer : public FrameDrawer {
 
     void setMesh(const PatchMesh& mesh) override {
         mRenderer->setMesh(mesh);
-        mChannels = mesh.channels();
-        hide(mesh);
+        look(mesh);
     }
 
     void update(const PatchMesh& mesh, std::span<const PatchId> patches) override {
         mRenderer->update(mesh, patches);
-        hide(mesh);
+        look(mesh);
     }
 
     Result<QImage> draw(const View& view) override {
@@ -78,8 +77,8 @@ class GlDrawer : public FrameDrawer {
             mTarget.emplace(view.width, view.height);
         }
         mTarget->bind();
-        if (const auto drawn = mRenderer->draw(view); !drawn) return tl::unexpected<Error>(drawn.error());
-        return toQImage(mTarget->read(mAnyHidden ? 4 : mChannels));
+        if (const auto drawn = mRenderer->draw(view, {.showHidden = false}); !drawn) return tl::unexpected<Error>(drawn.error());
+        return toQImage(mTarget->read(mTransparent ? 4 : 3));
     }
 
   private:
@@ -87,15 +86,12 @@ class GlDrawer : public FrameDrawer {
 
     bool makeCurrent() { return mContext.isValid() && mContext.makeCurrent(&mSurface); }
 
-    void hide(const PatchMesh& mesh) {
-        std::vector<PatchId> hidden;
-        mAnyHidden = false;
+    void look(const PatchMesh& mesh) {
+        mTransparent = mesh.channels() == 4;
         mesh.forEachPatch([&](PatchId p) {
             const PatchAttributes& attributes = mesh.attributes(p);
-            if (attributes.hidden) hidden.push_back(p);
-            mAnyHidden = mAnyHidden || attributes.hidden || attributes.cutOut;
+            mTransparent = mTransparent || attributes.hidden || attributes.cutOut;
         });
-        mRenderer->setHidden(hidden);
     }
 
     QOffscreenSurface mSurface;
@@ -104,8 +100,7 @@ class GlDrawer : public FrameDrawer {
     std::optional<render::OffscreenTarget> mTarget;
     QSize mSize;
     render::GlDevice mDevice;
-    int mChannels = 3;
-    bool mAnyHidden = false;
+    bool mTransparent = false;
 };
 
 }  // namespace
