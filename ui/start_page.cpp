@@ -80,7 +80,7 @@ class RecentCard : public QAbstractButton {
         painter.drawRoundedRect(frame, kRoundingPx / 2, kRoundingPx / 2);
         const QRect picture(QPoint(kCardMarginPx, kCardMarginPx), kThumbnailPx);
         if (mThumbnail.isNull())
-            icon("picture", palette()).paint(&painter, picture, Qt::AlignCenter, QIcon::Disabled);
+            tessera::icon("picture", palette()).paint(&painter, picture, Qt::AlignCenter, QIcon::Disabled);
         else
             painter.drawImage(pictureRect(picture), mThumbnail);
         painter.setPen(palette().color(QPalette::WindowText));
