@@ -190,15 +190,11 @@ ActionTable::ActionTable(QWidget* window, const Settings& settings) {
 }
 
 void ActionTable::applyKeys(const Settings& settings) {
-    const QList<KeyRow> rows = keyRows();
+    QList<KeyRow> rows = keyRows();
     const QList<QKeySequence> preset = presetKeys(settings.keyPreset(), rows);
-    for (int i = 0; i < rows.size(); ++i) {
-        const ActionSpec& spec = kActions[i];
-        QList<QKeySequence> keys{preset[i]};
-        if (preset[i] == rows[i].def) keys = tableKeys(spec);  // with the further ones
-        if (const auto own = settings.key(spec.name)) keys = {*own};
-        setKeys(mActions[size_t(spec.id)], spec, keys);
-    }
+    for (int i = 0; i < rows.size(); ++i) rows[i].current = settings.key(rows[i].name).value_or(preset[i]);
+    for (int i = 0; i < rows.size(); ++i)
+        setKeys(mActions[size_t(kActions[i].id)], kActions[i], keysInForce(rows, i));
 }
 
 void ActionTable::tintIcons(const QPalette& palette) {
@@ -214,7 +210,8 @@ QList<KeyRow> ActionTable::keyRows() const {
                      .text = plain(spec.text),
                      .menu = plain(spec.menu),
                      .def = keys.value(0),
-                     .current = mActions[size_t(spec.id)]->shortcut()});
+                     .current = mActions[size_t(spec.id)]->shortcut(),
+                     .further = keys.mid(1)});
     }
     return rows;
 }

@@ -159,8 +159,8 @@ std::optional<QPainterPath> readSvgPath(QStringView d) {
 std::optional<SvgDrawing> readSvgDrawing(const QByteArray& svg) {
     SvgDrawing drawing;
     QXmlStreamReader xml(svg);
-    while (xml.readNextStartElement() || !xml.atEnd()) {
-        if (!xml.isStartElement()) continue;
+    while (!xml.atEnd()) {
+        if (xml.readNext() != QXmlStreamReader::StartElement) continue;
         const QXmlStreamAttributes attributes = xml.attributes();
         if (xml.name() == u"svg") {
             drawing.side = attributes.value("viewBox").split(u' ').value(2).toDouble();

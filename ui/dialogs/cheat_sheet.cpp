@@ -32,10 +32,12 @@ struct Group {
 
 QList<Group> keyGroups(const QList<KeyRow>& rows) {
     QList<Group> groups;
-    for (const KeyRow& row : rows) {
-        if (row.current.isEmpty()) continue;
-        if (groups.isEmpty() || groups.last().title != row.menu) groups.append({row.menu, {}});
-        groups.last().entries.append({row.current.toString(QKeySequence::NativeText), row.text});
+    for (int i = 0; i < rows.size(); ++i) {
+        QStringList keys;
+        for (const QKeySequence& key : keysInForce(rows, i)) keys << key.toString(QKeySequence::NativeText);
+        if (keys.isEmpty()) continue;
+        if (groups.isEmpty() || groups.last().title != rows[i].menu) groups.append({rows[i].menu, {}});
+        groups.last().entries.append({keys.join(CheatSheet::tr(" or ")), rows[i].text});
     }
     return groups;
 }

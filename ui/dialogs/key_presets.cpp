@@ -2,6 +2,7 @@
 #include "ui/dialogs/key_presets.h"
 
 #include <QHash>
+#include <algorithm>
 #include <span>
 
 namespace tessera {
@@ -69,6 +70,17 @@ QList<QKeySequence> presetKeys(KeyPreset preset, const QList<KeyRow>& rows) {
         const auto own = presetKey(preset, row.name);
         keys.append(own ? *own : taken.contains(row.def) ? QKeySequence() : row.def);
     }
+    return keys;
+}
+
+QList<QKeySequence> keysInForce(const QList<KeyRow>& rows, int row) {
+    const KeyRow& asked = rows[row];
+    if (asked.current.isEmpty()) return {};
+    QList<QKeySequence> keys{asked.current};
+    if (asked.current != asked.def) return keys;
+    for (const QKeySequence& key : asked.further)
+        if (std::none_of(rows.begin(), rows.end(), [&](const KeyRow& other) { return other.current == key; }))
+            keys.append(key);
     return keys;
 }
 
