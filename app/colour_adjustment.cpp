@@ -43,24 +43,29 @@ bool ColourAdjustment::begin(const QString& text, const Recolouring& kind, const
 void ColourAdjustment::show(const Recolouring& how) {
     if (!active()) return;
     mShown = how;
+    draw(&Recolourer::preview);
+}
+
+void ColourAdjustment::draw(Touched (Recolourer::*recolour)(PatchMesh&, const Recolouring&) const) {
     // Recolourings have no way to fail.
     (void)mGesture->preview([&](PatchMesh& mesh) -> Result<Touched> {
         mesh = mBase;
-        return united(mTouched, mRecolourer->apply(mesh, how));
+        return united(mTouched, ((*mRecolourer).*recolour)(mesh, *mShown));
     });
 }
 
 void ColourAdjustment::commit() {
-    if (!active()) return cancel();
+    if (!active() || !mShown) return cancel();
+    draw(&Recolourer::apply);
     const Touched touched = mGesture->touched();
     // Where the gesture ended as it began there is no step.
     const uint64_t before = mSession->revision();
-    const std::optional<Recolouring> shown = mShown;
+    const Recolouring shown = *mShown;
     mGesture->commit();
     cancel();
-    if (!mSession || mSession->revision() == before || !shown) return;
+    if (!mSession || mSession->revision() == before) return;
     mTouched = touched;
-    mValues.insert_or_assign(mSession->revision(), *shown);
+    mValues.insert_or_assign(mSession->revision(), shown);
 }
 
 void ColourAdjustment::cancel() {

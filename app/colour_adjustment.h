@@ -24,7 +24,8 @@ class ColourAdjustment {
     // What has been done, as far as the session's state is one of this adjustment; nothing for others.
     std::optional<Recolouring> value() const;
 
-    // A gesture: begin, show any number of times, commit or cancel. False, and none is begun, where an
+    // A gesture: begin, show any number of times, commit or cancel. What is shown is near, what is committed
+    // exact. False, and none is begun, where an
     // EditSession is open. `kind` is any value of the recolouring that will be shown.
     bool begin(const QString& text, const Recolouring& kind, const RecolourOptions& options);
     bool active() const { return mGesture.has_value() && mGesture->open(); }
@@ -33,6 +34,7 @@ class ColourAdjustment {
     void cancel();
 
   private:
+    void draw(Touched (Recolourer::*recolour)(PatchMesh&, const Recolouring&) const);
     void startFrom(const Recolouring& kind, const RecolourOptions& options);
 
     QPointer<DocumentSession> mSession;

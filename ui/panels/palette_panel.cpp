@@ -251,15 +251,20 @@ void PalettePanel::preview(glm::dvec3 colour) {
         mEdit->start().forEachPatch([&](PatchId p) { all.push_back(p); });
         mRecolourer.emplace(mEdit->start(), std::move(all));
     }
+    draw(colour, &Recolourer::preview);
+}
+
+void PalettePanel::draw(glm::dvec3 colour,
+                        Touched (Recolourer::*recolour)(PatchMesh&, const Recolouring&) const) {
     // Recolourings have no way to fail.
     (void)mEdit->preview([&](PatchMesh& mesh) -> Result<Touched> {
-        return mRecolourer->apply(mesh, PaletteShift{mPalette, mEntry, colour});
+        return ((*mRecolourer).*recolour)(mesh, PaletteShift{mPalette, mEntry, colour});
     });
 }
 
 void PalettePanel::finishEdit(std::optional<glm::dvec3> colour) {
     if (mEdit && colour) {
-        preview(*colour);
+        draw(*colour, &Recolourer::apply);
         mEdit->commit();
     }
     mEdit.reset();

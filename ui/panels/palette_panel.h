@@ -66,6 +66,7 @@ class PalettePanel : public QWidget {
     void select(int entry, Qt::KeyboardModifiers modifiers);
     void edit(int entry);
     void preview(glm::dvec3 colour);
+    void draw(glm::dvec3 colour, Touched (Recolourer::*recolour)(PatchMesh&, const Recolouring&) const);
     void finishEdit(std::optional<glm::dvec3> colour);
     void useColour(glm::dvec3 colour);
     void showSwatches();
