@@ -54,7 +54,7 @@ bool CanvasWidget::event(QEvent* event) {
     if (gesture->gestureType() != Qt::ZoomNativeGesture || !mSession) return QWidget::event(event);
     ViewTransform view = mView;
     view.zoomAt(gesture->position() * devicePixelRatioF(), 1 + gesture->value());
-    changeView(view);
+    zoomViewOn(view);
     return true;
 }
 
@@ -65,6 +65,7 @@ void CanvasWidget::wheelEvent(QWheelEvent* event) {
     const QPointF notches = QPointF(event->angleDelta()) / kNotch;
     if (event->modifiers() & Qt::ControlModifier) {
         view.zoomAt(event->position() * devicePixelRatioF(), std::pow(kZoomPerNotch, notches.y()));
+        return zoomViewOn(view);
     } else {
         // Touchpads say pixels, wheels say notches. Shift turns a wheel sideways.
         QPointF step =

@@ -185,13 +185,13 @@ void CanvasWidget::zoomStep(bool larger) {
 void CanvasWidget::zoomTo(double scale) {
     ViewTransform view = mView;
     view.setScaleAt(deviceRect().center(), scale);
-    changeView(view);
+    zoomView(view);
 }
 
 void CanvasWidget::fit() {
     ViewTransform view = mView;
     view.fit(pictureSize(), deviceSize(), kFitMarginPx * devicePixelRatioF());
-    changeView(view);
+    zoomView(view);
     mFitted = true;
 }
 
@@ -203,7 +203,7 @@ void CanvasWidget::showRect(const QRectF& image) {
     ViewTransform view = mView;
     view.setScaleAt(deviceRect().center(), scale);
     view.panBy(deviceRect().center() - view.toScreen(image.center()));
-    changeView(view);
+    zoomView(view);
 }
 
 void CanvasWidget::centreOn(QPointF image) {
@@ -214,10 +214,7 @@ void CanvasWidget::centreOn(QPointF image) {
 }
 
 void CanvasWidget::previousZoom() {
-    const ViewTransform now = mView;
-    mSinceZoom.invalidate();
-    changeView(mViewBefore);
-    mViewBefore = now;
+    zoomView(ViewTransform(mViewBefore));
 }
 
 QRectF CanvasWidget::visiblePart() const {
@@ -235,18 +232,26 @@ void CanvasWidget::changeViewAsAsked(const ViewRequest& request) {
         ViewTransform view = mView;
         view.setScaleAt(mView.toScreen(QPointF(step->at.x, step->at.y)),
                         ViewTransform::nextScale(mView.scale(), step->in));
-        changeView(view);
+        zoomView(view);
     } else {
         const Rect& rect = std::get<ShowRect>(request).rect;
         showRect(QRectF(QPointF(rect.min.x, rect.min.y), QPointF(rect.max.x, rect.max.y)).normalized());
     }
 }
 
+void CanvasWidget::zoomView(const ViewTransform& view) {
+    mViewBefore = mView;
+    mSinceZoom.invalidate();
+    changeView(view);
+}
+
+void CanvasWidget::zoomViewOn(const ViewTransform& view) {
+    if (!mSinceZoom.isValid() || mSinceZoom.elapsed() > kOneZoomMs) mViewBefore = mView;
+    mSinceZoom.start();
+    changeView(view);
+}
+
 void CanvasWidget::changeView(const ViewTransform& view) {
-    if (view.scale() != mView.scale()) {
-        if (!mSinceZoom.isValid() || mSinceZoom.elapsed() > kOneZoomMs) mViewBefore = mView;
-        mSinceZoom.start();
-    }
     mFitted = false;
     mLaidOut = deviceSize();
     mView = view;

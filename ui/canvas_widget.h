@@ -50,7 +50,6 @@ class CanvasWidget : public QWidget {
     QRectF visiblePart() const;
 
     void setOverlays(const OverlayOptions& options);
-    size_t featureCount() const { return mOverlay.featureCount(); }
     // Shows the photo instead of the vector image for as long as it is on. Holding O does the same.
     void setShowOriginal(bool on);
     // The photo left of a line that can be dragged, the vector image right of it.
@@ -109,6 +108,9 @@ class CanvasWidget : public QWidget {
     void setSpace(bool on);
     bool dragsView(const QMouseEvent& event) const;
     void dragView(QPointF position);
+    // Zooms at once, or goes on with what a wheel has begun: the view before is that before all of it.
+    void zoomView(const ViewTransform& view);
+    void zoomViewOn(const ViewTransform& view);
     void changeView(const ViewTransform& view);
     void requestFrame();
     void updateCursor();

@@ -77,7 +77,8 @@ class GlDrawer : public FrameDrawer {
             mTarget.emplace(view.width, view.height);
         }
         mTarget->bind();
-        if (const auto drawn = mRenderer->draw(view, {.showHidden = false}); !drawn) return tl::unexpected<Error>(drawn.error());
+        if (const auto drawn = mRenderer->draw(view, {.showHidden = false}); !drawn)
+            return tl::unexpected<Error>(drawn.error());
         return toQImage(mTarget->read(mTransparent ? 4 : 3));
     }
 

@@ -35,6 +35,12 @@ namespace {
 constexpr double kBrushStep = 1.2;
 constexpr double kLeastBrushPx = .5, kMostBrushPx = 2000;
 
+size_t featureCount(const PatchMesh& mesh) {
+    size_t count = 0;
+    mesh.forEachEdge([&](EdgeId e) { count += mesh.curve(e).feature ? 1 : 0; });
+    return count;
+}
+
 }  // namespace
 
 MainWindow::MainWindow()
@@ -237,8 +243,9 @@ void MainWindow::adoptSession() {
 void MainWindow::showSession() {
     const DocumentSession* session = mWorkspace.session();
     mStart->setVisible(!session);
-    mStatus->showCounts(session, mCanvas->featureCount());
-    mPanel->showSession(session, mCanvas->featureCount());
+    const size_t features = session ? featureCount(session->document().mesh) : 0;
+    mStatus->showCounts(session, features);
+    mPanel->showSession(session, features);
     showView();
     updateActions();
     updateTitle();

@@ -74,7 +74,7 @@ QWidget* MainWindow::makeCentre() {
 
 void MainWindow::makeDocks() {
     mPanel = new VectorizePanel(mSettings, *mActions);
-    QDockWidget* vectorize = addDock("vectorizeDock", tr("Vectorize"), mPanel, false);
+    QDockWidget* vectorize = addDock("vectorizeDock", tr("Vectorize"), mPanel, true);
     QDockWidget* recolour = addDock("recolourDock", tr("Recolour"), mRecolour = new RecolourPanel, true);
     QDockWidget* palette =
         addDock("paletteDock", tr("Palette"), mPalette = new PalettePanel(mSwatches), true);
@@ -94,7 +94,9 @@ QDockWidget* MainWindow::addDock(const QString& name, const QString& title, QWid
     auto* dock = new QDockWidget(title);
     dock->setObjectName(name);
     dock->setAllowedAreas(Qt::LeftDockWidgetArea | Qt::RightDockWidgetArea);
-    dock->setFeatures(QDockWidget::DockWidgetMovable | QDockWidget::DockWidgetFloatable);
+    dock->setFeatures(QDockWidget::DockWidgetMovable);
+    // The tab says the name.
+    dock->setTitleBarWidget(new QWidget);
     if (scrolls) {
         auto* area = new QScrollArea;
         area->setWidgetResizable(true);

@@ -51,6 +51,8 @@ const char* const kSheet = R"(
     QMenuBar { border-bottom: 1px solid %1; padding: 2px 4px; }
     QMenuBar::item { padding: 4px 9px; border-radius: 3px; }
     QMenuBar::item:selected { background: %7; }
+    QToolBar { border: none; border-bottom: 1px solid %1; background: %8; spacing: 2px; padding: 2px; }
+    QToolBar::separator { background: %1; width: 1px; height: 1px; margin: 4px; }
     QStatusBar { border-top: 1px solid %1; }
     QStatusBar::item { border: none; }
     QDockWidget { titlebar-close-icon: none; }
