@@ -177,7 +177,10 @@ void MainWindow::connectCanvas() {
     connect(&mHeatMap, &HeatMap::ready, mCanvas, &CanvasWidget::setHeatMap);
     connect(&mTools, &ToolManager::said, this, &MainWindow::say);
     // Keys of a tool are for the canvas, wherever the pointer took the tool up.
-    connect(&mTools, &ToolManager::toolChanged, mCanvas, [this] { mCanvas->setFocus(); });
+    connect(&mTools, &ToolManager::toolChanged, mCanvas, [this] {
+        mCanvas->setFocus();
+        updateOverlays();
+    });
 }
 
 void MainWindow::chooseRenderer() {
@@ -318,9 +321,12 @@ void MainWindow::updateSelectionActions() {
 void MainWindow::updateOverlays() {
     const ActionTable& a = *mActions;
     const bool byBlur = a[ActionId::ShowBlur]->isChecked();
+    // What can be taken hold of is seen.
+    const bool shaping = mTools.tool() == ToolId::Direct;
     mCanvas->setOverlays({.features = byBlur || a[ActionId::ShowFeatures]->isChecked(),
                           .featuresByBlur = byBlur,
-                          .edges = a[ActionId::ShowEdges]->isChecked(),
+                          .edges = shaping || a[ActionId::ShowEdges]->isChecked(),
+                          .vertices = shaping,
                           .controlPoints = a[ActionId::ShowControlPoints]->isChecked()});
 }
 

@@ -182,7 +182,8 @@ void OverlayPainter::paint(QPainter& painter, const ViewTransform& view, const Q
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing);
     paintCurves(painter, edges, clip, pixelRatio, options);
-    if (options.controlPoints) paintControlPoints(painter, edges, clip, pixelRatio);
+    if (options.vertices || options.controlPoints)
+        paintControlPoints(painter, edges, clip, pixelRatio, options.controlPoints);
     painter.restore();
 }
 
@@ -240,13 +241,15 @@ void OverlayPainter::appendCurve(std::vector<QLineF>& lines, const Shown& edge, 
 }
 
 void OverlayPainter::paintControlPoints(QPainter& painter, const std::vector<Shown>& edges,
-                                        const QRectF& clip, double pixelRatio) {
+                                        const QRectF& clip, double pixelRatio, bool withHandles) {
     std::vector<QLineF> lines;
     std::vector<QPointF> handles, vertices;
     for (const Shown& edge : edges) {
         for (const auto& [end, inner] : {std::pair{edge.p[0], edge.p[1]}, std::pair{edge.p[3], edge.p[2]}}) {
             if (edge.sizePx >= kVertexFromPx * pixelRatio && clip.contains(end)) vertices.push_back(end);
-            if (edge.sizePx < (edge.feature ? kFeatureHandleFromPx : kHandleFromPx) * pixelRatio) continue;
+            if (!withHandles ||
+                edge.sizePx < (edge.feature ? kFeatureHandleFromPx : kHandleFromPx) * pixelRatio)
+                continue;
             appendSegment(lines, end, inner, clip);
             if (clip.contains(inner)) handles.push_back(inner);
         }

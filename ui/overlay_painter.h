@@ -16,9 +16,10 @@ struct OverlayOptions {
     bool features = false;
     bool featuresByBlur = false;  // in the colour of their softness
     bool edges = false;
-    bool controlPoints = false;
+    bool vertices = false;
+    bool controlPoints = false;  // vertices and handles
 
-    bool any() const { return features || edges || controlPoints; }
+    bool any() const { return features || edges || vertices || controlPoints; }
     bool operator==(const OverlayOptions&) const = default;
 };
 
@@ -77,7 +78,7 @@ class OverlayPainter {
     static void paintCurves(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
                             double pixelRatio, const OverlayOptions& options);
     static void paintControlPoints(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
-                                   double pixelRatio);
+                                   double pixelRatio, bool withHandles);
     // Flattens an edge into segments; a segment that misses `clip` is left out.
     static void appendCurve(std::vector<QLineF>& lines, const Shown& edge, const QRectF& clip,
                             double pixelRatio);
