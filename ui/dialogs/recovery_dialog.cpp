@@ -111,8 +111,8 @@ void RecoveryDialog::update() {
     mRecover->setEnabled(count > 0);
     mDiscard->setEnabled(count > 0);
     mDiscard->setText(mAskedToDiscard ? tr("Discard for Good") : tr("Discard…"));
-    mWarning->setText(mAskedToDiscard ? tr("The changes in %n document(s) will be lost for good.", "", count)
-                                      : QString());
+    mWarning->setText(count == 1 ? tr("The changes in this document will be lost for good.")
+                                 : tr("The changes in %1 documents will be lost for good.").arg(count));
     mWarning->setVisible(mAskedToDiscard);
 }
 
