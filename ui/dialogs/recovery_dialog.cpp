@@ -41,6 +41,10 @@ RecoveryDialog::RecoveryDialog(const std::vector<RecoveryInfo>& found, QWidget* 
     mList->setAccessibleName(tr("Documents that can be recovered"));
     mList->setSpacing(2);
     mList->setIconSize({24, 24});
+    // The outlines of check boxes cannot be seen on the dark theme's base.
+    QPalette raised = palette();
+    raised.setColor(QPalette::Base, raised.color(QPalette::Button));
+    mList->setPalette(raised);
     for (const RecoveryInfo& info : found) {
         auto* item = new QListWidgetItem(icon("history", palette()),
                                          tr("%1\n%2 — %3").arg(nameOf(info), timeOf(info), placeOf(info)));
