@@ -27,6 +27,7 @@ namespace tessera {
 namespace {
 
 constexpr QSize kThumbnailPx(152, 104);
+constexpr int kPlaceholderPx = 36;
 constexpr int kCardMarginPx = 8;
 constexpr int kCardGapPx = 12;
 constexpr int kMaxColumns = 5;
@@ -80,7 +81,8 @@ class RecentCard : public QAbstractButton {
         painter.drawRoundedRect(frame, kRoundingPx / 2, kRoundingPx / 2);
         const QRect picture(QPoint(kCardMarginPx, kCardMarginPx), kThumbnailPx);
         if (mThumbnail.isNull())
-            tessera::icon("picture", palette()).paint(&painter, picture, Qt::AlignCenter, QIcon::Disabled);
+            tessera::icon("picture", palette())
+                .paint(&painter, placeholderRect(picture), Qt::AlignCenter, QIcon::Disabled);
         else
             painter.drawImage(pictureRect(picture), mThumbnail);
         painter.setPen(palette().color(QPalette::WindowText));
@@ -91,6 +93,12 @@ class RecentCard : public QAbstractButton {
     }
 
   private:
+    static QRect placeholderRect(const QRect& room) {
+        QRect rect(0, 0, kPlaceholderPx, kPlaceholderPx);
+        rect.moveCenter(room.center());
+        return rect;
+    }
+
     // The thumbnail in the middle of the room for it, never enlarged.
     QRect pictureRect(const QRect& room) const {
         QSize size = mThumbnail.deviceIndependentSize().toSize();

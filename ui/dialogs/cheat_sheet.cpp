@@ -15,7 +15,7 @@ namespace tessera {
 
 namespace {
 
-constexpr int kColumns = 3;
+constexpr int kColumns = 4;
 constexpr int kHeadingRows = 2;  // a heading takes the room of so many lines
 
 struct Entry {

@@ -140,6 +140,7 @@ void ExportDialog::makeFields(const QString& profile) {
     mSwatch = new QPushButton;
     mSwatch->setProperty("role", "small");
     mSwatch->setIconSize(kSwatchPx);
+    mSwatch->setAutoDefault(false);  // the Enter key exports
     mButtons = new QDialogButtonBox(QDialogButtonBox::Cancel);
     mExport = addPrimaryButton(mButtons, tr("Export…"));
 

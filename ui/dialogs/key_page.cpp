@@ -18,6 +18,7 @@ namespace tessera {
 namespace {
 
 enum Column { ActionColumn, KeyColumn, PresetColumn, ColumnCount };
+constexpr int kRowHeightPx = 22;
 constexpr int kRowRole = Qt::UserRole;
 
 QString native(const QKeySequence& key) {
@@ -125,9 +126,11 @@ void KeyPage::fillTree() {
             menu = new QTreeWidgetItem(mTree, {mRows[i].menu});
             menu->setFlags(Qt::ItemIsEnabled);
             menu->setExpanded(true);
+            menu->setSizeHint(ActionColumn, {0, kRowHeightPx});
         }
         auto* item = new QTreeWidgetItem(menu, {mRows[i].text});
         item->setData(ActionColumn, kRowRole, i);
+        item->setSizeHint(ActionColumn, {0, kRowHeightPx});
         mItems.append(item);
     }
     mTree->header()->setSectionResizeMode(ActionColumn, QHeaderView::Stretch);

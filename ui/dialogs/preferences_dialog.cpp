@@ -22,6 +22,13 @@ constexpr int kAutosaveStepSeconds = 30;
 constexpr int kHistoryStepMegabytes = 128;
 constexpr int kFieldWidthPx = 220;
 
+// Short enough for one line; what wraps takes more room in a form than it shows.
+QLabel* remark(const QString& text) {
+    QLabel* label = dimLabel(text);
+    label->setWordWrap(false);
+    return label;
+}
+
 QSpinBox* numberField(const QString& name, int least, int most, int step, int value) {
     auto* field = new QSpinBox;
     field->setObjectName(name);
@@ -38,6 +45,7 @@ PreferencesDialog::PreferencesDialog(const QList<KeyRow>& rows, Settings& settin
     : QDialog(parent), mSettings(settings), mKeys(new KeyPage(rows, settings.keyPreset())) {
     setWindowTitle(tr("Preferences"));
     auto* pages = new QTabWidget;
+    pages->setDocumentMode(true);
     pages->addTab(makeGeneralPage(), tr("&General"));
     pages->addTab(mKeys, tr("&Keys"));
     makeButtons();
@@ -72,12 +80,12 @@ QWidget* PreferencesDialog::makeGeneralPage() {
     addField(form, tr("&Theme"), mTheme);
     form->addRow(headingLabel(tr("Safety")));
     addField(form, tr("&Autosave every"), mAutosave);
-    form->addRow({}, dimLabel(tr("After a crash, what was autosaved is offered when Tessera starts.")));
+    form->addRow({}, remark(tr("After a crash, what was autosaved is offered when Tessera starts.")));
     form->addRow(headingLabel(tr("Machine")));
     addField(form, tr("&Undo memory"), mHistory);
-    form->addRow({}, dimLabel(tr("For each document. The oldest steps are forgotten beyond it.")));
+    form->addRow({}, remark(tr("For each document. The oldest steps are forgotten beyond it.")));
     addField(form, tr("T&hreads"), mThreads);
-    form->addRow({}, dimLabel(tr("For vectorizing and exporting. The result is the same with any number.")));
+    form->addRow({}, remark(tr("For vectorizing and exporting. The result is the same with any number.")));
     auto* page = new QWidget;
     auto* column = new QVBoxLayout(page);
     column->setContentsMargins(16, 16, 16, 16);

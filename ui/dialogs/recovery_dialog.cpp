@@ -41,6 +41,10 @@ RecoveryDialog::RecoveryDialog(const std::vector<RecoveryInfo>& found, QWidget* 
     mList->setAccessibleName(tr("Documents that can be recovered"));
     mList->setSpacing(2);
     mList->setIconSize({24, 24});
+    // The outlines of check boxes cannot be seen on the dark theme's base.
+    QPalette raised = palette();
+    raised.setColor(QPalette::Base, raised.color(QPalette::Button));
+    mList->setPalette(raised);
     for (const RecoveryInfo& info : found) {
         auto* item = new QListWidgetItem(icon("history", palette()),
                                          tr("%1\n%2 — %3").arg(nameOf(info), timeOf(info), placeOf(info)));
@@ -111,8 +115,8 @@ void RecoveryDialog::update() {
     mRecover->setEnabled(count > 0);
     mDiscard->setEnabled(count > 0);
     mDiscard->setText(mAskedToDiscard ? tr("Discard for Good") : tr("Discard…"));
-    mWarning->setText(mAskedToDiscard ? tr("The changes in %n document(s) will be lost for good.", "", count)
-                                      : QString());
+    mWarning->setText(count == 1 ? tr("The changes in this document will be lost for good.")
+                                 : tr("The changes in %1 documents will be lost for good.").arg(count));
     mWarning->setVisible(mAskedToDiscard);
 }
 
