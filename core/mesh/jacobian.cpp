@@ -157,4 +157,16 @@ std::optional<LatticePoint> certifiedInterior(const LatticeTriangle& t) {
     return std::nullopt;
 }
 
+std::optional<LatticePoint> certifiedDefaultInterior(const LatticeTriangle& t) {
+    constexpr size_t kRing = 9;
+    const auto before = [](LatticePoint a, LatticePoint b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
+    size_t first = 0;
+    for (const size_t corner : {size_t{3}, size_t{6}})
+        if (before(t.p[corner], t.p[first])) first = corner;
+    LatticeTriangle turned = t;
+    std::rotate_copy(t.p.begin(), t.p.begin() + std::ptrdiff_t(first), t.p.begin() + kRing, turned.p.begin());
+    turned.p[kInterior] = toLattice(defaultInterior(toPixels(turned)));
+    return certifiedInterior(turned);
+}
+
 }  // namespace tessera

@@ -36,4 +36,8 @@ double minBernstein(const LatticeTriangle& t);
 // single control point, so that is a small linear program). None where no interior point passes certified().
 std::optional<LatticePoint> certifiedInterior(const LatticeTriangle& t);
 
+// The same from the default point on, whatever t's own: it depends on the nine points of the sides alone, not
+// on which corner comes first.
+std::optional<LatticePoint> certifiedDefaultInterior(const LatticeTriangle& t);
+
 }  // namespace tessera

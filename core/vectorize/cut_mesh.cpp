@@ -166,8 +166,7 @@ bool sound(const CutMesh& cut, FaceId f) {
         ++s;
     }
     if (straight) return true;
-    t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
-    return certifiedInterior(t).has_value();
+    return certifiedDefaultInterior(t).has_value();
 }
 
 // Puts a node into the middle of a segment, each half of its points a cubic of its own. False, with nothing
@@ -344,9 +343,7 @@ PatchMesh toPatchMesh(const CutMesh& cut, int channels) {
         mesh.setCurve(EdgeId(e), {p[1], p[2], true, sigma});
     }
     mesh.forEachPatch([&](PatchId p) {
-        LatticeTriangle t = mesh.controlPoints(p);
-        t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
-        const auto interior = certifiedInterior(t);
+        const auto interior = certifiedDefaultInterior(mesh.controlPoints(p));
         TESSERA_CHECK(interior);
         mesh.setInterior(p, *interior);
     });

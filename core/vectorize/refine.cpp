@@ -139,8 +139,7 @@ bool Refiner::valid(const Triangle& t, double least) const {
         patch.p[3 * k + 1] = side[1];
         patch.p[3 * k + 2] = side[2];
     }
-    patch.p[kInterior] = toLattice(defaultInterior(toPixels(patch)));
-    return certifiedInterior(patch).has_value();
+    return certifiedDefaultInterior(patch).has_value();
 }
 
 // What changes around a vertex must be shaped like: well, or at least as the worst there is.

@@ -332,8 +332,7 @@ bool Simplifier::faceValid(const std::array<VertexId, 3>& corners, const std::ar
         const auto curve = sideCurve(corners[s], corners[(s + 1) % 3], sides[s], refit);
         for (size_t i = 0; i < 3; ++i) t.p[3 * s + i] = curve[i];
     }
-    t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
-    return certifiedInterior(t).has_value();
+    return certifiedDefaultInterior(t).has_value();
 }
 
 bool Simplifier::facesStayValid(HalfedgeId h, const std::optional<Refit>& refit,
@@ -460,9 +459,7 @@ BaseDomain Simplifier::baseDomain(const std::stop_token& stop) const {
     }
     base.mesh.forEachPatch([&](PatchId p) {
         if (stop.stop_requested()) return;
-        LatticeTriangle t = base.mesh.controlPoints(p);
-        t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
-        const auto interior = certifiedInterior(t);
+        const auto interior = certifiedDefaultInterior(base.mesh.controlPoints(p));
         TESSERA_CHECK(interior);  // kept at every contraction
         base.mesh.setInterior(p, *interior);
     });

@@ -34,9 +34,7 @@ bool certifyPatches(PatchMesh& mesh, std::span<const PatchId> patches) {
     std::vector<std::pair<PatchId, LatticePoint>> interiors;
     for (const PatchId p : patches) {
         if (!p.valid()) continue;
-        LatticeTriangle t = mesh.controlPoints(p);
-        t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
-        const auto interior = certifiedInterior(t);
+        const auto interior = certifiedDefaultInterior(mesh.controlPoints(p));
         if (!interior) return false;
         interiors.emplace_back(p, *interior);
     }

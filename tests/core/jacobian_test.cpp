@@ -195,6 +195,25 @@ TEST(CertifiedInterior, FindsAPointWhereTheDefaultFails) {
     EXPECT_GT(none, 10);
 }
 
+// A patch that was found sound must be so in whatever order its mesh names the corners.
+TEST(CertifiedInterior, OfTheDefaultDoesNotDependOnWhichCornerIsFirst) {
+    std::mt19937 random(7);
+    std::uniform_int_distribution<int32_t> shift(-900, 900);
+    int found = 0, none = 0;
+    for (int i = 0; i < 3000; ++i) {
+        LatticeTriangle t = affine({3, 5}, {11, 6}, {6, 13});
+        for (size_t k = 0; k < 9; ++k) t.p[k] = {t.p[k].x + shift(random), t.p[k].y + shift(random)};
+        const auto interior = certifiedDefaultInterior(t);
+        ++(interior ? found : none);
+        for (int turn = 0; turn < 2; ++turn) {
+            std::rotate(t.p.begin(), t.p.begin() + 3, t.p.begin() + 9);
+            EXPECT_EQ(certifiedDefaultInterior(t), interior) << i;
+        }
+    }
+    EXPECT_GT(found, 100);
+    EXPECT_GT(none, 100);
+}
+
 TEST(CertifiedInterior, NoneWhereSidesCross) {
     LatticeTriangle t = affine({0, 0}, {9, 0}, {3, 6});
     t.p[1] = {3 * kPx, 12 * kPx};
