@@ -43,6 +43,7 @@ Repaint repaintOf(const Levels& levels, const glm::dvec3&) {
 }
 
 Repaint repaintOf(const GradientRecolour& gradient, const glm::dvec3&) {
+    if (gradient.strength == 0) return {AffineColour{}, {}, false};
     const glm::dvec2 along = gradient.to - gradient.from;
     const double squared = glm::dot(along, along);
     return {std::nullopt,

@@ -12,8 +12,8 @@ namespace tessera {
 
 namespace {
 
-// Seams count this much against a pixel: as much as a solve of the whole picture comes to, or a little more.
-constexpr double kSeamWeight = 8;
+// Seams count this much against a pixel: about as much as a solve of the whole picture comes to.
+constexpr double kSeamWeight = 4;
 
 // The centres that a patch has; those of splines without sites are made anew.
 SiteChoice choiceOf(const PatchSpline& spline, int channels) {

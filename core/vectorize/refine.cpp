@@ -352,8 +352,16 @@ bool Refiner::collapseTo(size_t faces, Progress& progress) {
         changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
         std::erase_if(changed, [&](FaceId f) { return !m.mesh.alive(f); });
         updateFaces(changed);
-        for (const FaceId f : changed)
+        for (const FaceId f : changed) {
             for (const VertexId v : m.mesh.corners(f)) dirty.push_back(v);
+            // A feature vertex beyond a side may move its feature onto that side.
+            for (const HalfedgeId h : m.mesh.sides(f)) {
+                const HalfedgeId beyond = HalfedgeMesh::twin(h);
+                if (!m.mesh.face(beyond).valid()) continue;
+                const VertexId opposite = m.mesh.target(m.mesh.next(beyond));
+                if (m.kinds[opposite.index] == VertexKind::Feature) dirty.push_back(opposite);
+            }
+        }
         std::sort(dirty.begin(), dirty.end());
         dirty.erase(std::unique(dirty.begin(), dirty.end()), dirty.end());
         std::erase_if(dirty, [&](VertexId v) { return !m.mesh.alive(v); });
