@@ -15,7 +15,7 @@ constexpr int kRestMs = 150;
 constexpr double kMostOpaque = .85;
 
 QRgb heatColour(double levels) {
-    const double share = std::min(levels / kHeatFullLevels, 1.);
+    const double share = std::clamp((levels - kHeatFromLevels) / (kHeatFullLevels - kHeatFromLevels), 0., 1.);
     const double opacity = kMostOpaque * std::sqrt(share);
     return qPremultiply(qRgba(255, int(std::lround(230 * (1 - share))), 30, int(std::lround(255 * opacity))));
 }
