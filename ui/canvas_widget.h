@@ -65,6 +65,7 @@ class CanvasWidget : public QWidget {
     bool showsPhoto() const;
     // Whether what is on the screen is the view at its full quality.
     bool settled() const { return showsPhoto() || mFrames.settled(); }
+    bool drawnWithOpenGl() const { return mFrames.hasDrawer(); }
     bool hasOriginal() const { return mSession && mSession->photo().pyramid; }
 
   signals:
