@@ -5,7 +5,6 @@
 
 #include "core/base/check.h"
 #include "core/edit/spline_edit.h"
-#include "core/mesh/colour_basis.h"
 #include "core/vectorize/solve_colors.h"
 
 namespace tessera {
@@ -22,13 +21,6 @@ SiteChoice choiceOf(const PatchSpline& spline, int channels) {
     for (size_t c = 0; c < size_t(channels); ++c)
         choice.terms[c] = spline.sites.empty() ? int(choice.sites.size()) : std::max<int>(3, spline.terms[c]);
     return choice;
-}
-
-Image inBasis(const Image& photo, ColourBasis basis) {
-    Image image = photo;
-    float* planes[3] = {image.plane(0).data(), image.plane(1).data(), image.plane(2).data()};
-    fromWorking(basis, planes, image.planeSize());
-    return image;
 }
 
 }  // namespace

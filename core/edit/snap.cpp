@@ -107,24 +107,6 @@ std::optional<Snapped> findEdge(const Image& photo, const BezierCurve& curve, do
     return result;
 }
 
-// The inner control points of the cubic between two ends that is nearest to the points, by least squares.
-std::array<glm::dvec2, 2> fitInner(const Snapped& snapped, glm::dvec2 from, glm::dvec2 to) {
-    double a11 = 1e-9, a12 = 0, a22 = 1e-9;
-    glm::dvec2 r1(0), r2(0);
-    for (size_t i = 0; i < snapped.t.size(); ++i) {
-        const double t = snapped.t[i], s = 1 - t;
-        const double b0 = s * s * s, b1 = 3 * t * s * s, b2 = 3 * t * t * s, b3 = t * t * t;
-        const glm::dvec2 rest = snapped.to[i] - b0 * from - b3 * to;
-        a11 += b1 * b1;
-        a12 += b1 * b2;
-        a22 += b2 * b2;
-        r1 += b1 * rest;
-        r2 += b2 * rest;
-    }
-    const double determinant = a11 * a22 - a12 * a12;
-    return {(a22 * r1 - a12 * r2) / determinant, (a11 * r2 - a12 * r1) / determinant};
-}
-
 using Targets = std::map<ControlPointRef, glm::dvec2>;
 
 // Handles on both sides of a join get its mean tangent.
@@ -177,10 +159,11 @@ Targets findTargets(const PatchMesh& mesh, const Image& photo, std::span<const E
     }
     for (const auto& [e, found] : snapped) {
         const HalfedgeId h = HalfedgeMesh::halfedge(e), t = HalfedgeMesh::twin(h);
-        const auto inner = fitInner(found, targets[ControlPointRef::of(c.origin(h))],
-                                    targets[ControlPointRef::of(c.target(h))]);
-        targets[ControlPointRef::of(h)] = inner[0];
-        targets[ControlPointRef::of(t)] = inner[1];
+        BezierCurve curve = straightCurve(targets[ControlPointRef::of(c.origin(h))],
+                                          targets[ControlPointRef::of(c.target(h))]);
+        fitInner(found.to, found.t, curve);
+        targets[ControlPointRef::of(h)] = curve.p[1];
+        targets[ControlPointRef::of(t)] = curve.p[2];
     }
     joinTangents(mesh, targets);
     return targets;

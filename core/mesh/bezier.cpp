@@ -171,11 +171,9 @@ int64_t signedArea20(const LatticeTriangle& t) {
     return sum;
 }
 
-namespace {
+namespace {}  // namespace
 
-// Inner control points of the least-squares cubic for fixed parameters; false where the points do not
-// determine them.
-bool solveInner(std::span<const glm::dvec2> points, std::span<const double> parameters, BezierCurve& curve) {
+bool fitInner(std::span<const glm::dvec2> points, std::span<const double> parameters, BezierCurve& curve) {
     double a11 = 0, a12 = 0, a22 = 0;
     glm::dvec2 r1(0), r2(0);
     for (size_t i = 0; i < points.size(); ++i) {
@@ -194,8 +192,6 @@ bool solveInner(std::span<const glm::dvec2> points, std::span<const double> para
     curve.p[2] = (a11 * r2 - a12 * r1) / determinant;
     return true;
 }
-
-}  // namespace
 
 BezierCurve fitCurve(std::span<const glm::dvec2> points, int rounds) {
     TESSERA_CHECK(points.size() >= 2);
@@ -225,7 +221,7 @@ BezierCurve fitCurve(std::span<const glm::dvec2> points, int rounds) {
     }
 
     BezierCurve curve = straight;
-    if (!solveInner(points, parameters, curve)) return straight;
+    if (!fitInner(points, parameters, curve)) return straight;
     for (int round = 0; round < rounds; ++round) {
         // Gauss-Newton reparametrization: each point moves to its foot on the tangent, order kept.
         std::vector<double> moved(parameters);
@@ -238,7 +234,7 @@ BezierCurve fitCurve(std::span<const glm::dvec2> points, int rounds) {
         }
         if (!std::is_sorted(moved.begin(), moved.end())) break;
         BezierCurve next = curve;
-        if (!solveInner(points, moved, next)) break;
+        if (!fitInner(points, moved, next)) break;
         curve = next;
         parameters = std::move(moved);
     }

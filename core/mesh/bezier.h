@@ -102,6 +102,10 @@ int64_t signedArea20(const LatticeTriangle& t);
 // parameters, then reparametrized by projection `rounds` times. At least two points.
 BezierCurve fitCurve(std::span<const glm::dvec2> points, int rounds = 4);
 
+// Sets the curve's inner control points to those of the least-squares cubic with its ends for points at fixed
+// parameters; false, with nothing changed, where the points do not determine them.
+bool fitInner(std::span<const glm::dvec2> points, std::span<const double> parameters, BezierCurve& curve);
+
 // The largest distance from one of `points` to the curve.
 double maxDistance(const BezierCurve& curve, std::span<const glm::dvec2> points);
 

@@ -27,11 +27,6 @@ HalfedgeId successor(const PatchMesh& mesh, HalfedgeId h, const std::vector<uint
     return next;
 }
 
-glm::dvec2 unit(glm::dvec2 v) {
-    const double length = glm::length(v);
-    return length > 0 ? v / length : v;
-}
-
 // How far the parameter of a foot on an even curve can be from its share of the base.
 constexpr double kEvenSpan = .3;
 

@@ -40,4 +40,10 @@ inline double cross(glm::dvec2 a, glm::dvec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
+// The unit vector in v's direction; 0 for 0.
+inline glm::dvec2 unit(glm::dvec2 v) {
+    const double length = std::sqrt(v.x * v.x + v.y * v.y);
+    return length > 0 ? v / length : glm::dvec2(0);
+}
+
 }  // namespace tessera

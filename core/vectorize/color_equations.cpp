@@ -90,9 +90,15 @@ class EquationBuilder {
     }
     bool inReach(PatchId p) const;
     void addPatch(PatchId p, const PatchPixels& pixels, Parts& parts);
-    void addBlurTerms(PatchId p, const PatchPixels& pixels, const std::vector<uint8_t>& shared, Parts& parts);
-    std::vector<uint8_t> findShared(PatchId p, const PatchPixels& pixels);
-    void addSide(HalfedgeId h, size_t samples, uint32_t firstRow, double sign, const SeamWeights& weights,
+    // A share of a pixel that is another place's colour: a blurred feature's, at the foot of a sample.
+    struct Foot {
+        uint32_t patch, pixel;
+        float weight;
+        glm::vec2 at;
+    };
+    std::vector<Foot> findFeet(PatchId p, const PatchPixels& pixels, std::vector<uint8_t>& shared) const;
+    void addFeet(std::vector<Foot> feet, Parts& parts);
+    void addSide(HalfedgeId h, const ColorEquations::Seam& seam, double sign, const SeamWeights& weights,
                  Parts& parts);
 
     void gather(ColorEquations::Patch& patch, const std::vector<Parts::Chunk*>& chunks,
@@ -142,33 +148,17 @@ bool EquationBuilder::inReach(PatchId p) const {
            box.max.x >= mReach.min.x - kMargin && box.max.y >= mReach.min.y - kMargin;
 }
 
-// Pixels that are not the patch's alone.
-std::vector<uint8_t> EquationBuilder::findShared(PatchId p, const PatchPixels& pixels) {
-    std::vector<uint8_t> shared(pixels.pixels.size());
-    const float whole = 1 - .5F / float(mSide * mSide);
-    for (size_t k = 0; k < shared.size(); ++k) shared[k] = pixels.pixels[k].coverage < whole;
-    if (!mBlur.inReach(p)) return shared;
-    std::array<BlurTerm, kMaxBlurTerms> terms;
-    for (size_t i = 0; i < pixels.at.size(); ++i)
-        if (!shared[pixels.pixelOf[i]])
-            shared[pixels.pixelOf[i]] = mBlur.terms(p, glm::dvec2(pixels.at[i]), terms) > 0;
-    return shared;
-}
-
-// The jumps that blurred features add: own + weight (other - own), each at the foot.
-void EquationBuilder::addBlurTerms(PatchId p, const PatchPixels& pixels, const std::vector<uint8_t>& shared,
-                                   Parts& parts) {
+// The jumps that blurred features add: own + weight (other - own), each at the foot. Marks the pixels that
+// have any as shared.
+std::vector<EquationBuilder::Foot> EquationBuilder::findFeet(PatchId p, const PatchPixels& pixels,
+                                                             std::vector<uint8_t>& shared) const {
+    std::vector<Foot> feet;
+    if (!mBlur.inReach(p)) return feet;
     const float share = 1 / float(mSide * mSide);
     std::array<BlurTerm, kMaxBlurTerms> terms;
-    struct Foot {
-        uint32_t patch, pixel;
-        float weight;
-        glm::vec2 at;
-    };
-    std::vector<Foot> feet;
-    for (uint32_t i = 0; i < pixels.at.size(); ++i) {
-        if (!shared[pixels.pixelOf[i]]) continue;
+    for (size_t i = 0; i < pixels.at.size(); ++i) {
         const int count = mBlur.terms(p, glm::dvec2(pixels.at[i]), terms);
+        if (count > 0) shared[pixels.pixelOf[i]] = 1;
         for (int t = 0; t < count; ++t) {
             const BlurTerm& term = terms[size_t(t)];
             const uint32_t pixel = pixels.pixels[pixels.pixelOf[i]].index;
@@ -176,6 +166,10 @@ void EquationBuilder::addBlurTerms(PatchId p, const PatchPixels& pixels, const s
             feet.push_back({term.other.index, pixel, share * term.weight, term.otherAt});
         }
     }
+    return feet;
+}
+
+void EquationBuilder::addFeet(std::vector<Foot> feet, Parts& parts) {
     std::stable_sort(feet.begin(), feet.end(), [](const Foot& a, const Foot& b) {
         return a.patch != b.patch ? a.patch < b.patch : a.pixel < b.pixel;
     });
@@ -214,7 +208,11 @@ void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& part
     for (size_t i = 0; i < samples; ++i) means.col(pixels.pixelOf[i]) += values.col(Eigen::Index(i));
     means *= 1 / float(mSide * mSide);
 
-    const std::vector<uint8_t> shared = findShared(p, pixels);
+    // Pixels that are not the patch's alone.
+    std::vector<uint8_t> shared(pixels.pixels.size());
+    const float whole = 1 - .5F / float(mSide * mSide);
+    for (size_t k = 0; k < shared.size(); ++k) shared[k] = pixels.pixels[k].coverage < whole;
+    std::vector<Foot> feet = findFeet(p, pixels, shared);
     Eigen::MatrixXf targets = Eigen::MatrixXf::Zero(count, mMesh.channels());
     double weight = 0;
     for (Eigen::Index k = 0; k < count; ++k) {
@@ -228,7 +226,7 @@ void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& part
             for (int c = 0; c < mMesh.channels(); ++c) targets(k, c) = mPicture.plane(c)[pixel.index];
         }
     }
-    if (mBlur.inReach(p)) addBlurTerms(p, pixels, shared, parts);
+    addFeet(std::move(feet), parts);
     if (held(p.index)) return;
     Eigen::MatrixXf gram = Eigen::MatrixXf::Zero(patch.count, patch.count);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(means);
@@ -259,9 +257,10 @@ void EquationBuilder::addPixels(Progress& progress) {
     m.pixelRows = uint32_t(mPicture.planeSize());
 }
 
-// One patch's side of a seam: colours, and derivatives across the edge, at `samples` points.
-void EquationBuilder::addSide(HalfedgeId h, size_t samples, uint32_t firstRow, double sign,
+// One patch's side of a seam: colours, and derivatives across the edge.
+void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, double sign,
                               const SeamWeights& weights, Parts& parts) {
+    const uint32_t samples = seam.rowCount / m.seamStride;
     const HalfedgeMesh& mesh = mMesh.connectivity();
     const PatchId p = mesh.face(h);
     const auto sides = mesh.sides(p);
@@ -269,22 +268,20 @@ void EquationBuilder::addSide(HalfedgeId h, size_t samples, uint32_t firstRow, d
     const bool reversed = HalfedgeMesh::halfedge(HalfedgeMesh::edge(h)) != h;
     const BezierTriangle t = toPixels(mMesh.controlPoints(p));
     const BezierCurve curve = toPixels(mMesh.controlPoints(HalfedgeMesh::halfedge(HalfedgeMesh::edge(h))));
-    const double spacing = curve.length() / double(samples - 1);
     const size_t n = factorCount(p.index);
     std::vector<double> value(n), dx(n), dy(n);
-    const uint32_t stride = weights.gradient > 0 ? 2 : 1;
     for (uint32_t i = 0; i < samples; ++i) {
         const double along = double(i) / double(samples - 1), s = reversed ? 1 - along : along;
-        const double share = i == 0 || i + 1 == samples ? .5 * spacing : spacing;
+        const double share = seam.length(i * m.seamStride, m.seamStride);
         const double w0 = sign * std::sqrt(weights.colour * share);
         const double w1 = sign * std::sqrt(weights.gradient * share);
         Barycentric b(0);
         b[side] = 1 - s;
         b[(side + 1) % 3] = s;
         evaluateSlopes(p.index, domainPoint(b), value.data(), dx.data(), dy.data());
-        float* row = parts.add(firstRow + stride * i, p.index, n);
+        float* row = parts.add(seam.firstRow + m.seamStride * i, p.index, n);
         for (size_t k = 0; k < n; ++k) row[k] = float(w0 * value[k]);
-        if (stride == 1) continue;
+        if (m.seamStride == 1) continue;
         // The step in the domain that goes a pixel along the edge's normal: J^-1 normal.
         const PatchPoint at = evaluateWithDerivatives(t, b);
         const double det = cross(at.dv, at.dw);
@@ -294,7 +291,7 @@ void EquationBuilder::addSide(HalfedgeId h, size_t samples, uint32_t firstRow, d
         const double dv = det > 1e-9 ? cross(normal, at.dw) / det : 0;
         const double dw = det > 1e-9 ? cross(at.dv, normal) / det : 0;
         const double stepX = dv + .5 * dw, stepY = kDomainHeight * dw;
-        row = parts.add(firstRow + stride * i + 1, p.index, n);
+        row = parts.add(seam.firstRow + m.seamStride * i + 1, p.index, n);
         for (size_t k = 0; k < n; ++k) row[k] = float(w1 * (dx[k] * stepX + dy[k] * stepY));
     }
 }
@@ -304,32 +301,26 @@ void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
     constexpr double kSamplesPerPx = .7;
     // Sites are a tenth of an edge apart: fewer points would let colours swing between them.
     constexpr int kLeast = 11, kMost = 21;
-    struct Seam {
-        HalfedgeId h;
-        size_t samples;
-        uint32_t firstRow;
-    };
-    std::vector<Seam> seams;
+    std::vector<HalfedgeId> halfedges;  // of m.seams
     uint32_t rows = m.pixelRows;
+    m.seamStride = weights.gradient > 0 ? 2 : 1;
     mMesh.forEachEdge([&](EdgeId e) {
         if (mesh.onBorder(e) || mMesh.curve(e).feature || mMesh.curve(e).colourBreak) return;
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
         if (held(mesh.face(h).index) && held(mesh.face(HalfedgeMesh::twin(h)).index)) return;
         const double length = toPixels(mMesh.controlPoints(h)).length();
-        const auto samples = size_t(std::clamp(int(length * kSamplesPerPx), kLeast, kMost));
-        seams.push_back({h, samples, rows});
-        const uint32_t count = uint32_t(samples) * (weights.gradient > 0 ? 2 : 1);
+        const int samples = std::clamp(int(length * kSamplesPerPx), kLeast, kMost);
+        halfedges.push_back(h);
+        const uint32_t count = uint32_t(samples) * m.seamStride;
         m.seams.push_back({rows, count, length / double(samples - 1), weights.colour});
         rows += count;
     });
-    m.seamStride = weights.gradient > 0 ? 2 : 1;
     const size_t first = mParts.size();
-    mParts.resize(first + seams.size());
-    parallelFor(seams.size(), 16, [&](size_t begin, size_t end) {
+    mParts.resize(first + halfedges.size());
+    parallelFor(halfedges.size(), 16, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
-            addSide(seams[i].h, seams[i].samples, seams[i].firstRow, 1, weights, mParts[first + i]);
-            addSide(HalfedgeMesh::twin(seams[i].h), seams[i].samples, seams[i].firstRow, -1, weights,
-                    mParts[first + i]);
+            addSide(halfedges[i], m.seams[i], 1, weights, mParts[first + i]);
+            addSide(HalfedgeMesh::twin(halfedges[i]), m.seams[i], -1, weights, mParts[first + i]);
             mParts[first + i].shrink();
         }
     });

@@ -148,25 +148,19 @@ bool curved(const CutMesh& cut, HalfedgeId h) {
     return cut.curve(HalfedgeMesh::edge(h)) != nullptr;
 }
 
-// Whether the face's patch, with its curved sides, has a certified interior point.
-bool sound(const CutMesh& cut, FaceId f) {
-    LatticeTriangle t;
-    bool straight = true;
-    size_t s = 0;
-    for (const HalfedgeId h : cut.mesh.sides(f)) {
-        const VertexId a = cut.mesh.origin(h), b = cut.mesh.target(h);
-        const LatticePoint pa = cut.positions[a.index], pb = cut.positions[b.index];
-        const auto inner = straightControlPoints(pa, pb);
-        std::array<LatticePoint, 4> side{pa, inner[0], inner[1], pb};
-        if (const CutCurve* c = cut.curve(HalfedgeMesh::edge(h))) {
-            side = c->controlPoints(a, cut.positions);
-            straight = false;
-        }
-        for (size_t i = 0; i < 3; ++i) t.p[3 * s + i] = side[i];
-        ++s;
+// The curves beside patches that have no certified interior point, ascending.
+std::vector<uint32_t> unsoundCurves(const CutMesh& cut) {
+    std::vector<uint32_t> found;
+    for (uint32_t f = 0; f < cut.mesh.faceCapacity(); ++f) {
+        const auto sides = cut.mesh.sides(FaceId(f));
+        if (std::none_of(sides.begin(), sides.end(), [&](HalfedgeId h) { return curved(cut, h); })) continue;
+        if (certifiedDefaultInterior(sideControlPoints(cut, FaceId(f)))) continue;
+        for (const HalfedgeId h : sides)
+            if (curved(cut, h)) found.push_back(uint32_t(cut.curveOfEdge[HalfedgeMesh::edge(h).index]));
     }
-    if (straight) return true;
-    return certifiedDefaultInterior(t).has_value();
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
 }
 
 // Puts a node into the middle of a segment, each half of its points a cubic of its own. False, with nothing
@@ -204,16 +198,8 @@ bool halve(FeatureNetwork& network, size_t index, double tolerancePx) {
 // Halves the segments that leave a patch beside them without a certificate: halves lie four times as close to
 // their chords, between which the triangulation puts its faces. False where there is nothing to halve.
 bool halveUnsound(const CutMesh& cut, FeatureNetwork& network, double tolerancePx) {
-    std::vector<uint32_t> bad;
-    for (uint32_t f = 0; f < cut.mesh.faceCapacity(); ++f) {
-        if (sound(cut, FaceId(f))) continue;
-        for (const HalfedgeId h : cut.mesh.sides(FaceId(f)))
-            if (curved(cut, h)) bad.push_back(uint32_t(cut.curveOfEdge[HalfedgeMesh::edge(h).index]));
-    }
-    std::sort(bad.begin(), bad.end());
-    bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
     bool any = false;
-    for (const uint32_t i : bad) {
+    for (const uint32_t i : unsoundCurves(cut)) {
         const CutCurve& c = cut.curves[i];
         const auto segment = std::find_if(
             network.segments.begin(), network.segments.end(),
@@ -229,14 +215,7 @@ size_t straighten(CutMesh& cut) {
     constexpr int kPulls = 4;
     std::vector<int> pulls(cut.curves.size(), 0);
     while (true) {
-        std::vector<uint32_t> bad;
-        for (uint32_t f = 0; f < cut.mesh.faceCapacity(); ++f) {
-            if (sound(cut, FaceId(f))) continue;
-            for (const HalfedgeId h : cut.mesh.sides(FaceId(f)))
-                if (curved(cut, h)) bad.push_back(uint32_t(cut.curveOfEdge[HalfedgeMesh::edge(h).index]));
-        }
-        std::sort(bad.begin(), bad.end());
-        bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+        const std::vector<uint32_t> bad = unsoundCurves(cut);
         for (const uint32_t i : bad) {
             CutCurve& c = cut.curves[i];
             ++pulls[i];
@@ -307,8 +286,6 @@ Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, 
     constexpr int kHalvings = 4;
     const int width = sharp.width(), height = sharp.height();
     FeatureNetwork halved = network;
-    halved.width = width;
-    halved.height = height;
     const double wanted = std::max(0.0, double(faces) / 2 - double(network.nodes.size()));
     std::vector<LatticePoint> points = borderPoints(width, height, double(faces) / 2);
     const auto inside = diffuse(richness(sharp), keptFree(network, width, height), width, height, wanted);
@@ -326,6 +303,21 @@ Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, 
                       {"feature edges refused", double(refused)},
                       {"feature edges straightened", double(straightened)}};
     return cut;
+}
+
+LatticeTriangle sideControlPoints(const CutMesh& cut, FaceId f) {
+    LatticeTriangle t;
+    size_t s = 0;
+    for (const HalfedgeId h : cut.mesh.sides(f)) {
+        const VertexId a = cut.mesh.origin(h), b = cut.mesh.target(h);
+        const LatticePoint pa = cut.positions[a.index], pb = cut.positions[b.index];
+        const auto inner = straightControlPoints(pa, pb);
+        std::array<LatticePoint, 4> side{pa, inner[0], inner[1], pb};
+        if (const CutCurve* c = cut.curve(HalfedgeMesh::edge(h))) side = c->controlPoints(a, cut.positions);
+        for (size_t i = 0; i < 3; ++i) t.p[3 * s + i] = side[i];
+        ++s;
+    }
+    return t;
 }
 
 PatchMesh toPatchMesh(const CutMesh& cut, int channels) {

@@ -53,6 +53,9 @@ struct CutMesh {
 Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, size_t faces,
                              const VectorizeSettings& settings, StageReport& report, Progress& progress);
 
+// The nine control points of a face's sides, as its patch has them; the interior point is left at 0.
+LatticeTriangle sideControlPoints(const CutMesh& cut, FaceId f);
+
 // The patches: interior points certified, features marked with their blur, colours constant.
 PatchMesh toPatchMesh(const CutMesh& cut, int channels);
 

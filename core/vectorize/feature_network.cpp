@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -17,7 +18,7 @@ namespace tessera {
 namespace {
 
 constexpr double kLeastSegmentPx = 4, kMostSegmentPx = 40;
-constexpr double kMostTurn = 75 * 3.14159265358979323846 / 180;
+constexpr double kMostTurn = 75 * std::numbers::pi / 180;
 constexpr int kTangentPoints = 3;
 // After so many rounds of mending parts of chains, whole chains go.
 constexpr int kMendRounds = 8, kMostRounds = 60;
@@ -51,11 +52,6 @@ int roomAt(const FeatureChain& chain, uint32_t at, int step, int most) {
 bool hasOneSide(const FeatureChain& chain, uint32_t at) {
     if (!chain.closed && (at == 0 || int(at) + 1 == pointCount(chain))) return true;
     return std::binary_search(chain.corners.begin(), chain.corners.end(), at);
-}
-
-glm::dvec2 unit(glm::dvec2 v) {
-    const double length = glm::length(v);
-    return length > 0 ? v / length : glm::dvec2(0);
 }
 
 // Unit tangent at a point, in the direction `step` (1 or -1) of the chain's points: at corners and ends that

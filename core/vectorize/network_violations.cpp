@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "core/vectorize/feature_network.h"
@@ -14,7 +15,7 @@ namespace {
 using Polyline = std::vector<glm::dvec2>;
 
 constexpr double kApartPx = 1, kNodeZonePx = 4;
-constexpr double kLeastAngle = 15 * 3.14159265358979323846 / 180;
+constexpr double kLeastAngle = 15 * std::numbers::pi / 180;
 
 double distanceToPiece(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
     const glm::dvec2 d = b - a;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -16,7 +17,6 @@ namespace tessera {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kGain = 1e-9;  // what a change must gain at least, of the error before
 
 // Sides are moved outwards by this much before the fit: pixels across an edge count for both its patches, as
@@ -35,13 +35,8 @@ double shape(LatticePoint a, LatticePoint b, LatticePoint c) {
 }
 
 double leastShape() {
-    const double s = std::sin(Refiner::kMinAngleDegrees * kPi / 180);
+    const double s = std::sin(Refiner::kMinAngleDegrees * std::numbers::pi / 180);
     return s * s;
-}
-
-glm::dvec2 unit(glm::dvec2 v) {
-    const double length = std::sqrt(v.x * v.x + v.y * v.y);
-    return length > 0 ? v / length : glm::dvec2(0);
 }
 
 }  // namespace
@@ -287,7 +282,7 @@ Refiner::Option Refiner::bestCollapse(VertexId u) const {
     return best;
 }
 
-void Refiner::collapse(HalfedgeId h, std::vector<FaceId>& changed, std::vector<VertexId>& dirty) {
+void Refiner::collapse(HalfedgeId h, std::vector<FaceId>& changed) {
     const VertexId u = m.mesh.origin(h), v = m.mesh.target(h);
     RecordedCollapse record{h, {false, false}, {}};
     if (m.kinds[u.index] == VertexKind::Feature) {
@@ -296,7 +291,6 @@ void Refiner::collapse(HalfedgeId h, std::vector<FaceId>& changed, std::vector<V
         record.kept = keptSides(h, *curve);
         record.curve = curve->curve;
     }
-    m.mesh.forEachOutgoing(u, [&](HalfedgeId out) { dirty.push_back(m.mesh.target(out)); });
     apply(record, m);
     if (mRecord) mRecord->push_back(record);
     m.mesh.forEachOutgoing(v, [&](HalfedgeId out) {
@@ -344,7 +338,7 @@ bool Refiner::collapseTo(size_t faces, Progress& progress) {
                 continue;
             }
             const size_t from = changed.size();
-            collapse(h, changed, dirty);
+            collapse(h, changed);
             for (size_t i = from; i < changed.size(); ++i) touched[changed[i].index] = 1;
             ++done;
         }

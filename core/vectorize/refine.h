@@ -87,7 +87,7 @@ class Refiner {
     bool fansAfter(HalfedgeId h, const std::optional<Merge>& merge, std::vector<Triangle>& fans,
                    double& before) const;
     Option bestCollapse(VertexId u) const;
-    void collapse(HalfedgeId h, std::vector<FaceId>& changed, std::vector<VertexId>& dirty);
+    void collapse(HalfedgeId h, std::vector<FaceId>& changed);
     double flipCost(EdgeId e) const;
     double splitCost(EdgeId e) const;
     LatticePoint middle(EdgeId e) const;

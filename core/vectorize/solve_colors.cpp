@@ -256,6 +256,12 @@ size_t setSplines(PatchMesh& mesh, const ColorEquations& equations,
 
 }  // namespace
 
+Image inBasis(Image picture, ColourBasis basis) {
+    float* planes[3] = {picture.plane(0).data(), picture.plane(1).data(), picture.plane(2).data()};
+    fromWorking(basis, planes, picture.planeSize());
+    return picture;
+}
+
 Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vector<SiteChoice>& choices,
                               const VectorizeSettings& settings, StageReport& report, Progress& progress) {
     const SeamWeights seams{1, settings.seamGradientWeight};

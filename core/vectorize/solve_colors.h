@@ -11,6 +11,9 @@
 
 namespace tessera {
 
+// The picture with its first three channels in `basis`, as fits want it.
+Image inBasis(Image picture, ColourBasis basis);
+
 // Stage "colours", variant "joint": `image` in the opponent basis, as the result is; `choices` by patch id.
 Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vector<SiteChoice>& choices,
                               const VectorizeSettings& settings, StageReport& report, Progress& progress);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <numeric>
 
 #include "core/base/parallel.h"
@@ -266,7 +267,7 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
 }
 
 double segmentsNeeded(const FeatureChain& chain) {
-    constexpr double kLengthPx = 40, kTurn = 75 * 3.14159265358979323846 / 180;
+    constexpr double kLengthPx = 40, kTurn = 75 * std::numbers::pi / 180;
     constexpr size_t kReach = 3;  // points over which a direction is taken
     const size_t n = chain.points.size(), margin = chain.closed ? 0 : kReach;
     double turning = 0;

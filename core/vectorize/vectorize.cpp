@@ -108,12 +108,6 @@ Result<VectorImage> runPaper(const Image& image, const VectorizeSettings& settin
     return result;
 }
 
-Image inOpponentBasis(Image image) {
-    float* planes[3] = {image.plane(0).data(), image.plane(1).data(), image.plane(2).data()};
-    fromWorking(ColourBasis::Opponent, planes, image.planeSize());
-    return image;
-}
-
 // As many features as the mesh is to be cut along.
 Result<FeatureNetwork> findNetwork(const Image& image, const VectorizeSettings& settings,
                                    const std::map<std::string, std::string>& variants, StageReport& report,
@@ -151,7 +145,7 @@ Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& sett
     network = FeatureNetwork{};
 
     // Large pictures are most of the memory: each lives no longer than the stage that needs it.
-    sharp = inOpponentBasis(std::move(sharp));
+    sharp = inBasis(std::move(sharp), ColourBasis::Opponent);
     auto fit = std::make_unique<const PolynomialFit>(sharp);
     if (observe.ladder) {
         auto ladder =
@@ -178,7 +172,8 @@ Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& sett
         const auto sites = chooseSites(*curved, sharp, settings.termsPerPatch, progress);
         sharp = Image();
         if (!progress.step(.3)) return stopped();
-        return solveColors(std::move(*curved), inOpponentBasis(image), sites, settings, r, progress);
+        return solveColors(std::move(*curved), inBasis(image, ColourBasis::Opponent), sites, settings, r,
+                           progress);
     });
     if (!coloured) return tl::unexpected(coloured.error());
     result.mesh = std::move(*coloured);

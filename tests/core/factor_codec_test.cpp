@@ -7,7 +7,6 @@
 #include "core/document/codec.h"
 #include "core/document/factor_codec.h"
 #include "core/export/rasterize.h"
-#include "core/mesh/colour_basis.h"
 #include "core/vectorize/solve_colors.h"
 #include "tests/support/painted_image.h"
 #include "tests/support/random_documents.h"
@@ -42,9 +41,7 @@ class FittedDocument : public ::testing::Test {
         StageReport report;
         image = texture(128, 96);
         Document d;
-        Image opponent = image;
-        float* planes[3] = {opponent.plane(0).data(), opponent.plane(1).data(), opponent.plane(2).data()};
-        fromWorking(ColourBasis::Opponent, planes, opponent.planeSize());
+        const Image opponent = inBasis(image, ColourBasis::Opponent);
         const PatchMesh grid = testing::gridMesh(128, 96, 8, 6);
         auto mesh =
             solveColors(grid, opponent, chooseSites(grid, opponent, 48, progress), {}, report, progress);

@@ -39,16 +39,10 @@ Image painted(Paint&& paint) {
     return image;
 }
 
-Image inOpponent(Image image) {
-    float* planes[3] = {image.plane(0).data(), image.plane(1).data(), image.plane(2).data()};
-    fromWorking(ColourBasis::Opponent, planes, image.planeSize());
-    return image;
-}
-
 PatchMesh solved(const Image& image, const VectorizeSettings& settings, PatchMesh mesh = square()) {
     StageReport report;
     Progress progress;
-    const Image opponent = inOpponent(image);
+    const Image opponent = inBasis(image, ColourBasis::Opponent);
     const auto sites = chooseSites(mesh, opponent, settings.termsPerPatch, progress);
     auto result = solveColors(std::move(mesh), opponent, sites, settings, report, progress);
     EXPECT_TRUE(result.has_value());
@@ -138,7 +132,7 @@ TEST(SitePursuit, CentresGoWhereTheDetailIs) {
         return .5 + .4 * std::exp(-(dx * dx + dy * dy) / 8);
     });
     Progress progress;
-    const auto choices = chooseSites(square(), inOpponent(image), 20, progress);
+    const auto choices = chooseSites(square(), inBasis(image, ColourBasis::Opponent), 20, progress);
     ASSERT_EQ(choices.size(), 4U);
     EXPECT_GT(choices[3].terms[0], 15);
     EXPECT_LT(choices[1].terms[0], 6);

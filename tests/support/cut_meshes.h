@@ -22,17 +22,7 @@ inline FeatureNetwork detectedNetwork(const Image& image, const VectorizeSetting
 
 // The controls of a face as patches have them; the interior point is the default one.
 inline LatticeTriangle patchOf(const CutMesh& cut, FaceId f) {
-    LatticeTriangle t;
-    size_t k = 0;
-    for (const HalfedgeId h : cut.mesh.sides(f)) {
-        const VertexId a = cut.mesh.origin(h), b = cut.mesh.target(h);
-        const LatticePoint pa = cut.positions[a.index], pb = cut.positions[b.index];
-        const auto inner = straightControlPoints(pa, pb);
-        std::array<LatticePoint, 4> side{pa, inner[0], inner[1], pb};
-        if (const CutCurve* c = cut.curve(HalfedgeMesh::edge(h))) side = c->controlPoints(a, cut.positions);
-        for (size_t i = 0; i < 3; ++i) t.p[3 * k + i] = side[i];
-        ++k;
-    }
+    LatticeTriangle t = sideControlPoints(cut, f);
     t.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
     return t;
 }
