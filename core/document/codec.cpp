@@ -99,7 +99,7 @@ Result<void> decodeInfoChunks(const ChunkIndex& index, Document& d) {
         });
 }
 
-Result<void> decodeEditChunks(const ChunkIndex& index, Document& d) {
+Result<void> decodeEditChunks(const ChunkIndex& index, uint32_t version, Document& d) {
     const auto packed = [&](const ChunkTag& tag, auto&& decode) {
         return index.optional(tag, [&](std::span<const uint8_t> bytes) {
             std::vector<uint8_t> all;
@@ -113,8 +113,9 @@ Result<void> decodeEditChunks(const ChunkIndex& index, Document& d) {
         .and_then([&] {
             return packed(kSelections, [&](Bytes b) { return decodeSelections(b, d.mesh, d.selections); });
         })
-        .and_then(
-            [&] { return packed(kFitted, [&](Bytes b) { return decodeFitted(b, d.mesh, d.fitted); }); });
+        .and_then([&] {
+            return packed(kFitted, [&](Bytes b) { return decodeFitted(b, version, d.mesh, d.fitted); });
+        });
 }
 
 std::string quoted(const std::string& path) {
@@ -176,9 +177,10 @@ Result<Document> decodeDocument(std::span<const uint8_t> bytes) {
         else if (index.find(chunk.tag) != &chunk)
             return damagedChunk(chunk, "is there twice");
     }
-    return decodeMeshChunks(index, chunkFileVersion(bytes), document)
+    const uint32_t version = chunkFileVersion(bytes);
+    return decodeMeshChunks(index, version, document)
         .and_then([&] { return decodeInfoChunks(index, document); })
-        .and_then([&] { return decodeEditChunks(index, document); })
+        .and_then([&] { return decodeEditChunks(index, version, document); })
         .map([&] { return std::move(document); });
 }
 

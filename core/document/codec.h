@@ -11,7 +11,7 @@
 
 namespace tessera {
 
-constexpr uint32_t kFormatVersion = 2;
+constexpr uint32_t kFormatVersion = 3;
 
 struct ChunkSize {
     std::string tag;

@@ -9,6 +9,7 @@
 #include "core/document/byte_stream.h"
 #include "core/document/colour_codec.h"
 #include "core/document/geometry_codec.h"
+#include "core/document/site_basis.h"
 #include "core/edit/drag_colour.h"
 
 namespace tessera {
@@ -88,7 +89,7 @@ void writeSpline(ByteWriter& writer, const PatchSpline& spline) {
     for (const float k : spline.coefficients) writeFloat(writer, k);
 }
 
-std::string readSpline(ByteReader& reader, int channels, PatchSpline& spline) {
+std::string readSpline(ByteReader& reader, int channels, const SiteLattice& lattice, PatchSpline& spline) {
     for (uint8_t& terms : spline.terms) terms = reader.u8();
     const auto sites = reader.raw(reader.u8());
     spline.sites.assign(sites.begin(), sites.end());
@@ -99,7 +100,9 @@ std::string readSpline(ByteReader& reader, int channels, PatchSpline& spline) {
     }
     for (size_t i = spline.offset(channels); i > 0 && !reader.failed(); --i)
         spline.coefficients.push_back(readFloat(reader));
-    return reader.failed() ? kCutShort : splineViolation(spline, channels);
+    if (reader.failed()) return kCutShort;
+    const std::string wrong = lattice.adopt(spline);
+    return wrong.empty() ? splineViolation(spline, channels) : wrong;
 }
 
 // Whether a point of the border stays on its side of the picture, and a corner where it is.
@@ -331,8 +334,8 @@ namespace {
 
 class FittedReader {
   public:
-    FittedReader(std::span<const uint8_t> bytes, const PatchMesh& mesh)
-        : mReader(bytes), mNow(mesh), mNumbers(mesh.connectivity()), mFitted(mesh) {}
+    FittedReader(std::span<const uint8_t> bytes, const PatchMesh& mesh, const SiteLattice& lattice)
+        : mReader(bytes), mNow(mesh), mLattice(lattice), mNumbers(mesh.connectivity()), mFitted(mesh) {}
 
     std::string run() {
         for (const auto read :
@@ -390,7 +393,7 @@ class FittedReader {
         if (!readIds(mReader, mNow.patchCount(), ids)) return kWrongId;
         for (const uint32_t p : ids) {
             PatchSpline spline;
-            if (std::string wrong = readSpline(mReader, mNow.channels(), spline); !wrong.empty())
+            if (std::string wrong = readSpline(mReader, mNow.channels(), mLattice, spline); !wrong.empty())
                 return wrong;
             mFitted.setSpline(PatchId(p), std::move(spline));
         }
@@ -415,15 +418,16 @@ class FittedReader {
 
     ByteReader mReader;
     const PatchMesh& mNow;
+    const SiteLattice& mLattice;
     FileNumbers mNumbers;
     PatchMesh mFitted;
 };
 
 }  // namespace
 
-std::string decodeFitted(std::span<const uint8_t> bytes, const PatchMesh& mesh,
+std::string decodeFitted(std::span<const uint8_t> bytes, uint32_t version, const PatchMesh& mesh,
                          std::optional<PatchMesh>& fitted) {
-    FittedReader reader(bytes, mesh);
+    FittedReader reader(bytes, mesh, SiteLattice::ofVersion(version));
     std::string wrong = reader.run();
     if (wrong.empty()) fitted = reader.take();
     return wrong;

@@ -31,12 +31,12 @@ std::vector<uint8_t> encodeSelections(const std::vector<NamedSelection>& selecti
                                       const FileNumbers& numbers);
 std::vector<uint8_t> encodeFitted(const PatchMesh& mesh, const PatchMesh& fitted, const FileNumbers& numbers);
 
-// Each returns what is wrong, or empty. `mesh` is as decoded.
+// Each returns what is wrong, or empty. `mesh` is as decoded, `version` the file's.
 std::string decodePatchAttributes(std::span<const uint8_t> bytes, PatchMesh& mesh);
 std::string decodeColourBreaks(std::span<const uint8_t> bytes, PatchMesh& mesh);
 std::string decodeSelections(std::span<const uint8_t> bytes, const PatchMesh& mesh,
                              std::vector<NamedSelection>& selections);
-std::string decodeFitted(std::span<const uint8_t> bytes, const PatchMesh& mesh,
+std::string decodeFitted(std::span<const uint8_t> bytes, uint32_t version, const PatchMesh& mesh,
                          std::optional<PatchMesh>& fitted);
 
 }  // namespace tessera

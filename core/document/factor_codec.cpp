@@ -77,11 +77,13 @@ size_t levelOf(double expected) {
 }
 
 constexpr size_t kShares = 17;  // 16ths
+constexpr size_t kMostBorderSites = 3 * kSiteSubdivisions;
+static_assert(kMostBorderSites <= 64, "a patch's border sites are bits of a word");
 
 struct Models {
     BitModel exact;
-    // Seven bits from the highest, by those before; by what is around, or by the channel before.
-    std::array<std::array<std::array<BitModel, 128>, 4>, kMaxChannels> counts;
+    // Bits from the highest, by those before; by what is around, or by the channel before.
+    std::array<std::array<std::array<BitModel, 256>, 4>, kMaxChannels> counts;
     // By the share of places that are still to be taken, the place's ring, and the places around it.
     std::array<std::array<std::array<std::array<BitModel, 3>, 4>, 3>, kShares> taken;
     std::array<std::array<BitModel, kMaxChannels>, kShares> group;
@@ -92,7 +94,7 @@ struct Models {
 // What later neighbours ask of a patch.
 struct Shown {
     bool known = false;  // not exact
-    std::array<std::array<float, kBorderSites>, kMaxChannels> border{};
+    std::array<std::array<float, kMostBorderSites>, kMaxChannels> border{};
     std::array<double, kMaxChannels> detail{}, seam{};  // activities at the end
 };
 
@@ -103,6 +105,10 @@ class FactorCoder {
         : mCoder(coder),
           mStream(stream),
           mMesh(stream.mesh),
+          mLattice(stream.lattice),
+          mSubdivisions(size_t(stream.lattice.subdivisions())),
+          mBorder(stream.lattice.border()),
+          mEarlierPlaces(earlierPlaces(stream.lattice)),
           mColours(colours),
           mShown(colours.size()),
           mBorderTaken(colours.size(), 0) {}
@@ -137,7 +143,7 @@ class FactorCoder {
     std::optional<FactorBasis> prepare(uint32_t f) {
         FactorColour& colour = mColours[f];
         if (colour.exact) return {};
-        FactorBasis basis(colour, mStream.channels, mStream.step, mStream.areas[f]);
+        FactorBasis basis(mLattice, colour, mStream.channels, mStream.step, mStream.areas[f]);
         for (size_t c = 0; c < channels(); ++c) colour.factors[c].resize(colour.counts[c]);
         return basis;
     }
@@ -167,13 +173,14 @@ class FactorCoder {
         size_t context = neighbours == 0 ? 3 : level(sum / neighbours, 20, 34);
         for (size_t c = 0; c < channels(); ++c) {
             size_t node = 1;
-            for (size_t bit = 64; bit > 0; bit /= 2) {
+            const size_t highest = mLattice.size() < 128 ? 64 : 128;
+            for (size_t bit = highest; bit > 0; bit /= 2) {
                 bool set = (colour.counts[c] & bit) != 0;
                 mCoder.bit(mModels->counts[c][context][node], set);
                 node = 2 * node + size_t(set);
             }
-            const size_t count = node - 128;
-            if (count < kCorners || count > kCentreSites) return "has a number of factors that cannot be";
+            const size_t count = node - 2 * highest;
+            if (count < kCorners || count > mLattice.size()) return "has a number of factors that cannot be";
             colour.counts[c] = uint8_t(count);
             context = c == 0 ? level(count, 20, 34) : level(count, 4, 12);
         }
@@ -210,8 +217,8 @@ class FactorCoder {
         const std::array<uint8_t, kCentreSites> beyond = sitesBeyond(f);
         size_t total = 0;
         for (const size_t n : left) total += n;
-        for (size_t s = kCorners; s < kCentreSites && total > 0; ++s) {
-            const size_t places = kCentreSites - s;
+        for (size_t s = kCorners; s < mLattice.size() && total > 0; ++s) {
+            const size_t places = mLattice.size() - s;
             bool taken = groups[s] != 0;
             if (total < places)
                 mCoder.bit(mModels->taken[shareOf(total, places)][ringOf(s)][around(groups, s)][beyond[s]],
@@ -226,7 +233,7 @@ class FactorCoder {
         if constexpr (!Coder::kEncodes) {
             colour.sites = {0, 1, 2};
             for (size_t g = 0; g < left.size(); ++g)
-                for (size_t s = kCorners; s < kCentreSites; ++s)
+                for (size_t s = kCorners; s < mLattice.size(); ++s)
                     if (groups[s] == g + 1) colour.sites.push_back(uint8_t(s));
         }
         markBorder(f, groups);
@@ -245,35 +252,34 @@ class FactorCoder {
         return left.size() - 1;
     }
 
-    static size_t ringOf(size_t site) {
-        const SitePlace p = sitePlaces()[site];
-        const int ring = std::min({p.b, p.c, kSiteSubdivisions - p.b - p.c});
+    size_t ringOf(size_t site) const {
+        const SitePlace p = mLattice.place(site);
+        const int ring = std::min({p.b, p.c, mLattice.subdivisions() - p.b - p.c});
         return size_t(std::min(ring, 2));
     }
 
     // How many of the places beside it, of those before it, are taken.
-    static size_t around(const Groups& groups, size_t site) {
+    size_t around(const Groups& groups, size_t site) const {
         size_t count = 0;
-        for (const uint8_t before : earlierPlaces()[site]) count += before != site && groups[before] != 0;
+        for (const uint8_t before : mEarlierPlaces[site]) count += before != site && groups[before] != 0;
         return count;
     }
 
     // Beside each site, of those before it; the site itself where there is none.
-    static const std::array<std::array<uint8_t, 3>, kCentreSites>& earlierPlaces() {
-        static const auto kPlaces = [] {
-            std::array<std::array<uint8_t, 3>, kCentreSites> all{};
-            constexpr std::array<SitePlace, 3> kSteps{{{-1, 0}, {0, -1}, {1, -1}}};
-            for (size_t s = 0; s < kCentreSites; ++s) {
-                all[s].fill(uint8_t(s));
-                for (size_t t = kCorners; t < s; ++t)
-                    for (size_t i = 0; i < kSteps.size(); ++i)
-                        if (sitePlaces()[t].b - sitePlaces()[s].b == kSteps[i].b &&
-                            sitePlaces()[t].c - sitePlaces()[s].c == kSteps[i].c)
-                            all[s][i] = uint8_t(t);
-            }
-            return all;
-        }();
-        return kPlaces;
+    using EarlierPlaces = std::vector<std::array<uint8_t, 3>>;
+    static EarlierPlaces earlierPlaces(const SiteLattice& lattice) {
+        EarlierPlaces all(lattice.size());
+        constexpr std::array<SitePlace, 3> kSteps{{{-1, 0}, {0, -1}, {1, -1}}};
+        for (size_t s = 0; s < all.size(); ++s) {
+            all[s].fill(uint8_t(s));
+            const SitePlace here = lattice.place(s);
+            for (size_t t = kCorners; t < s; ++t)
+                for (size_t i = 0; i < kSteps.size(); ++i)
+                    if (lattice.place(t).b - here.b == kSteps[i].b &&
+                        lattice.place(t).c - here.c == kSteps[i].c)
+                        all[s][i] = uint8_t(t);
+        }
+        return all;
     }
 
     // For the sites on the border: 1 or 2 where an earlier patch lies there, 2 if it has a site there too.
@@ -281,9 +287,9 @@ class FactorCoder {
         std::array<uint8_t, kCentreSites> beyond{};
         forEachEarlier(f, [&](uint32_t s, uint32_t g) {
             const size_t theirs = mMesh.neighbourSide[f][s];
-            for (size_t i = 1; i < kSiteSubdivisions; ++i) {
-                const size_t there = (theirs + 1) * kSiteSubdivisions - i;
-                beyond[borderSites()[s * kSiteSubdivisions + i]] = uint8_t(borderTaken(g, there) ? 2 : 1);
+            for (size_t i = 1; i < mSubdivisions; ++i) {
+                const size_t there = (theirs + 1) * mSubdivisions - i;
+                beyond[mBorder[s * mSubdivisions + i]] = uint8_t(borderTaken(g, there) ? 2 : 1);
             }
         });
         return beyond;
@@ -291,8 +297,8 @@ class FactorCoder {
 
     bool borderTaken(uint32_t g, size_t place) const { return (mBorderTaken[g] >> place & 1) != 0; }
     void markBorder(uint32_t f, const Groups& groups) {
-        for (size_t i = 0; i < kBorderSites; ++i)
-            if (groups[borderSites()[i]] != 0) mBorderTaken[f] |= uint32_t{1} << i;
+        for (size_t i = 0; i < mBorder.size(); ++i)
+            if (groups[mBorder[i]] != 0) mBorderTaken[f] |= uint64_t{1} << i;
     }
 
     void codeFloat(float& value) {
@@ -352,12 +358,12 @@ class FactorCoder {
             const Shown& shown = mShown[g];
             const size_t theirs = mMesh.neighbourSide[f][s];
             const bool feature = mStream.featureEdges[mMesh.sideEdge[f][s]];
-            for (size_t i = 0; i <= kSiteSubdivisions; ++i) {
+            for (size_t i = 0; i <= mSubdivisions; ++i) {
                 const double value =
-                    double(shown.border[c][((theirs + 1) * kSiteSubdivisions - i) % kBorderSites]);
+                    double(shown.border[c][((theirs + 1) * mSubdivisions - i) % mBorder.size()]);
                 if (i == 0) told.any += value;
                 if (feature) continue;
-                const uint8_t site = borderSites()[(s * kSiteSubdivisions + i) % kBorderSites];
+                const uint8_t site = mBorder[(s * mSubdivisions + i) % mBorder.size()];
                 told.value[site] += value;
                 ++told.count[site];
             }
@@ -365,7 +371,7 @@ class FactorCoder {
             told.seam += shown.seam[c];
             ++neighbours;
         });
-        for (size_t s = 0; s < kCentreSites; ++s)
+        for (size_t s = 0; s < mLattice.size(); ++s)
             if (told.count[s] > 1) told.value[s] /= told.count[s];
         if (neighbours == 0) return {{}, {}, 0, mLast[c].detail, mLast[c].seam};
         told.any /= neighbours;
@@ -405,13 +411,13 @@ class FactorCoder {
             const double value = factors[k] * step;
             if (k < kCorners) corners += value;
             const auto function = basis.function(int(k));
-            for (size_t s = 0; s < kCentreSites; ++s) sum[s] += value * function[s];
+            for (size_t s = 0; s < mLattice.size(); ++s) sum[s] += value * function[s];
             const double miss = std::max(std::abs(value - foreseen), .25 * step);
             if (way == Across) seam += (miss - seam) * kRate;
             if (way == Detail) detail += (miss / spread - detail) * kRate;
         }
         Shown& shown = mShown[f];
-        for (size_t i = 0; i < kBorderSites; ++i) shown.border[c][i] = float(sum[borderSites()[i]]);
+        for (size_t i = 0; i < mBorder.size(); ++i) shown.border[c][i] = float(sum[mBorder[i]]);
         shown.detail[c] = detail;
         shown.seam[c] = seam;
         mLast[c] = {detail, seam};
@@ -431,9 +437,13 @@ class FactorCoder {
     Coder& mCoder;
     const FactorStream& mStream;
     const FileMesh& mMesh;
+    const SiteLattice& mLattice;
+    size_t mSubdivisions;
+    std::span<const uint8_t> mBorder;
+    EarlierPlaces mEarlierPlaces;
     std::vector<FactorColour>& mColours;
     std::vector<Shown> mShown;
-    std::vector<uint32_t> mBorderTaken;
+    std::vector<uint64_t> mBorderTaken;  // a bit for each of mBorder
     std::unique_ptr<Models> mModels = std::make_unique<Models>();
     struct Activities {
         double detail = 0, seam = 0;

@@ -1,4 +1,4 @@
-// Colour splines on chosen sites to and from a range-coded stream: the method of version 2.
+// Colour splines on chosen sites to and from a range-coded stream: the method of versions 2 and 3.
 //
 // A channel of n terms is stored as its n Newton factors (newton_basis.h), which fall off quickly and of
 // which a smaller number makes a coarser spline. Each factor has a step of its own, so that the mean squared
@@ -37,8 +37,10 @@ double factorStep(double squaredError, double factors);
 // What the factors of a patch are measured in.
 class FactorBasis {
   public:
-    // Of the colour's counts and sites, which may be in any order that a SiteBasis takes.
-    FactorBasis(const FactorColour& colour, int channels, double step, double area);
+    // Of the colour's counts and sites, which may be in any order that a SiteBasis takes. Keeps a reference
+    // to the lattice.
+    FactorBasis(const SiteLattice& lattice, const FactorColour& colour, int channels, double step,
+                double area);
 
     const SiteBasis& basis() const { return mBasis; }
     // In colour units.
@@ -61,13 +63,15 @@ class FactorBasis {
 FactorColour quantizedFactors(const PatchSpline& spline, int channels, double step, double area);
 
 // Both directions return what is wrong, or empty; `streamBytes` is the length of the stream, by which the
-// number of factors is bounded. The decoder sets the splines too.
+// number of factors is bounded. The encoder takes the current lattice alone. The decoder sets the splines
+// too, whose sites are of the stream's lattice.
 struct FactorStream {
     const FileMesh& mesh;
     const std::vector<bool>& featureEdges;
     const std::vector<double>& areas;
     int channels = 3;
     double step = 0;
+    const SiteLattice& lattice = SiteLattice::current();
 };
 std::string encodeFactors(RangeEncoder& coder, const FactorStream& stream,
                           std::vector<FactorColour>& colours);

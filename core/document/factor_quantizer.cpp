@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint8_t kCorners = 3;
 // The trapezoidal rule on the lattice makes the functions larger than they are; measured.
-constexpr double kTrueShare = .78;
+constexpr double kTrueShare = .93;
 constexpr double kLeastArea = 1.0 / 16, kLargestArea = 16;
 
 // Whether the spline is what its values at the sites make it: its side conditions hold up to what the floats
@@ -84,8 +84,9 @@ double factorStep(double squaredError, double factors) {
     return std::sqrt(12 * squaredError / (kTrueShare * factors));
 }
 
-FactorBasis::FactorBasis(const FactorColour& colour, int channels, double step, double area)
-    : mChannels(channels), mScaled(step / std::sqrt(area)), mBasis(colour.sites, colour.counts) {
+FactorBasis::FactorBasis(const SiteLattice& lattice, const FactorColour& colour, int channels, double step,
+                         double area)
+    : mChannels(channels), mScaled(step / std::sqrt(area)), mBasis(lattice, colour.sites, colour.counts) {
     for (size_t c = 0; c < size_t(channels); ++c) {
         const auto same = std::find(colour.counts.begin(), colour.counts.begin() + c, colour.counts[c]);
         const auto before = size_t(same - colour.counts.begin());
@@ -122,7 +123,7 @@ FactorColour quantizedFactors(const PatchSpline& spline, int channels, double st
         }
         colour.sites = {0, 1, 2};
         if (most > kCorners) colour.sites.assign(spline.sites.begin(), spline.sites.begin() + most);
-        const FactorBasis basis(colour, channels, step, area);
+        const FactorBasis basis(SiteLattice::current(), colour, channels, step, area);
         // Factors only where what comes back from them gives them again: by that, and by nothing else, is
         // storing a second time known to give the same bytes.
         if (basis.quantize(spline, colour.factors)) {

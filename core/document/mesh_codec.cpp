@@ -131,7 +131,7 @@ PatchMesh assemble(const FileMesh& file, const FileGeometry& g, int channels,
     return mesh;
 }
 
-// How the colours of a document of version 2 are stored.
+// How the colours of a document are stored from version 2 on.
 enum ColourMethod : uint8_t { Values = 0, Factors = 1 };
 
 bool usesSites(const PatchMesh& mesh) {
@@ -212,8 +212,11 @@ tl::expected<DecodedColours, std::string> decodeColourChunk(std::span<const uint
     if (method == Factors) {
         const std::vector<double> areas = relativeAreas(file, g);
         const std::vector<bool> features = featuresOf(g);
-        wrong = decodeFactors(coder, {file, features, areas, channels, colours.step}, stream.size(),
+        const SiteLattice& lattice = SiteLattice::ofVersion(version);
+        wrong = decodeFactors(coder, {file, features, areas, channels, colours.step, lattice}, stream.size(),
                               colours.splines);
+        for (size_t i = 0; i < colours.splines.size() && wrong.empty(); ++i)
+            wrong = lattice.adopt(colours.splines[i]);
     } else {
         std::vector<FileColour> values;
         wrong = decodeColours(coder, file, featuresOf(g), channels, values);

@@ -2,6 +2,7 @@
 #include "core/document/site_basis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/check.h"
@@ -11,8 +12,6 @@ namespace tessera {
 namespace {
 
 constexpr int kCorners = 3;
-using Row = std::array<double, kCentreSites>;
-
 // The natural logarithm of m >= 1: m = 2^e f with f in [1, 2), log f by the series of atanh.
 double portableLog(int m) {
     constexpr double kLog2 = 0.693147180559945309417232;
@@ -26,105 +25,108 @@ double portableLog(int m) {
 }
 
 // phi of the distance between two places.
-double latticeKernel(SitePlace p, SitePlace q) {
+double latticeKernel(SitePlace p, SitePlace q, int subdivisions) {
     const int b = p.b - q.b, c = p.c - q.c, squared = b * b + b * c + c * c;
-    constexpr int kUnit = kSiteSubdivisions * kSiteSubdivisions;
+    const int unit = subdivisions * subdivisions;
     if (squared == 0) return 0;
-    return double(squared) / kUnit * (portableLog(squared) - portableLog(kUnit)) / 2;
-}
-
-double share(size_t site, int corner) {
-    const SitePlace p = sitePlaces()[site];
-    const int steps = corner == 0 ? kSiteSubdivisions - p.b - p.c : corner == 1 ? p.b : p.c;
-    return double(steps) / kSiteSubdivisions;
-}
-
-struct Tables {
-    std::array<Row, kCentreSites> phi{};
-    std::array<Row, kCentreSites>
-        kernel{};  // phi less what planes and the corners tell: positive semidefinite
-    std::array<std::array<double, kCorners>, kCentreSites> cornerKernel{};  // phi less its part at corners
-    Row weight{};  // of a site in means over the domain: the trapezoidal rule
-};
-
-const Tables& tables() {
-    static const Tables kTables = [] {
-        Tables t;
-        const auto& places = sitePlaces();
-        for (size_t i = 0; i < kCentreSites; ++i) {
-            for (size_t j = 0; j < kCentreSites; ++j) {
-                double sum = latticeKernel(places[i], places[j]);
-                for (int q = 0; q < kCorners; ++q) {
-                    sum -= share(i, q) * latticeKernel(places[size_t(q)], places[j]);
-                    sum -= share(j, q) * latticeKernel(places[i], places[size_t(q)]);
-                    for (int r = 0; r < kCorners; ++r)
-                        sum +=
-                            share(i, q) * share(j, r) * latticeKernel(places[size_t(q)], places[size_t(r)]);
-                }
-                t.phi[i][j] = latticeKernel(places[i], places[j]);
-                t.kernel[i][j] = i < kCorners || j < kCorners ? 0 : sum;
-            }
-            for (size_t q = 0; q < kCorners; ++q) {
-                t.cornerKernel[i][q] = latticeKernel(places[q], places[i]);
-                for (int r = 0; r < kCorners; ++r)
-                    t.cornerKernel[i][q] -= share(i, r) * latticeKernel(places[q], places[size_t(r)]);
-            }
-            const SitePlace p = places[i];
-            const int sides = (p.b == 0) + (p.c == 0) + (p.b + p.c == kSiteSubdivisions);
-            t.weight[i] = (sides == 0   ? 1
-                           : sides == 1 ? .5
-                                        : 1.0 / 6) *
-                          2 / (kSiteSubdivisions * kSiteSubdivisions);
-        }
-        return t;
-    }();
-    return kTables;
+    return double(squared) / unit * (portableLog(squared) - portableLog(unit)) / 2;
 }
 
 }  // namespace
 
-const std::array<SitePlace, kCentreSites>& sitePlaces() {
-    static const auto kPlaces = [] {
-        std::array<SitePlace, kCentreSites> places;
-        for (size_t s = 0; s < kCentreSites; ++s) {
-            const Barycentric b = barycentricOf(centreSites()[s]);
-            places[s] = {int(std::lround(b.y * kSiteSubdivisions)),
-                         int(std::lround(b.z * kSiteSubdivisions))};
-        }
-        return places;
-    }();
-    return kPlaces;
+const SiteLattice& SiteLattice::current() {
+    static const SiteLattice kLattice(kSiteSubdivisions);
+    return kLattice;
 }
 
-const std::array<uint8_t, kBorderSites>& borderSites() {
-    static const auto kSites = [] {
-        std::array<uint8_t, kBorderSites> sites{};
-        for (size_t s = 0; s < kCentreSites; ++s) {
-            const SitePlace p = sitePlaces()[s];
-            constexpr int n = kSiteSubdivisions;
-            if (p.c == 0 && p.b < n)
-                sites[size_t(p.b)] = uint8_t(s);
-            else if (p.b + p.c == n && p.c < n)
-                sites[size_t(n + p.c)] = uint8_t(s);
-            else if (p.b == 0)
-                sites[size_t(3 * n - p.c)] = uint8_t(s);
-        }
-        return sites;
-    }();
-    return kSites;
+const SiteLattice& SiteLattice::ofVersion(uint32_t version) {
+    static const SiteLattice kFirst(10);
+    return version < 3 ? kFirst : current();
 }
 
-SiteBasis::SiteBasis(std::span<const uint8_t> sites, std::span<const uint8_t> counts)
-    : mSites(sites.begin(), sites.end()), mFunctions(sites.size() * kCentreSites, 0), mSpreads(sites.size()) {
+SiteLattice::SiteLattice(int subdivisions) : mSubdivisions(subdivisions) {
+    const int n = subdivisions;
+    TESSERA_CHECK(n >= 1 && n <= kSiteSubdivisions);
+    mPlaces = {{0, 0}, {n, 0}, {0, n}};
+    for (int c = 0; c <= n; ++c)
+        for (int b = 0; b + c <= n; ++b)
+            if (b < n && c < n && b + c > 0) mPlaces.push_back({b, c});
+    mBorder.resize(size_t(3 * n));
+    for (size_t s = 0; s < size(); ++s) {
+        const SitePlace p = mPlaces[s];
+        if (p.c == 0 && p.b < n)
+            mBorder[size_t(p.b)] = uint8_t(s);
+        else if (p.b + p.c == n && p.c < n)
+            mBorder[size_t(n + p.c)] = uint8_t(s);
+        else if (p.b == 0)
+            mBorder[size_t(3 * n - p.c)] = uint8_t(s);
+        const int sides = (p.b == 0) + (p.c == 0) + (p.b + p.c == n);
+        mWeight.push_back((sides == 0 ? 1 : sides == 1 ? .5 : 1.0 / 6) * 2 / (n * n));
+    }
+    fillKernels();
+}
+
+void SiteLattice::fillKernels() {
+    const auto phiOf = [&](size_t i, size_t j) {
+        return latticeKernel(mPlaces[i], mPlaces[j], mSubdivisions);
+    };
+    for (size_t i = 0; i < size(); ++i) {
+        for (size_t j = 0; j < size(); ++j) {
+            double sum = phiOf(i, j);
+            for (int q = 0; q < kCorners; ++q) {
+                sum -= share(i, q) * phiOf(size_t(q), j);
+                sum -= share(j, q) * phiOf(i, size_t(q));
+                for (int r = 0; r < kCorners; ++r)
+                    sum += share(i, q) * share(j, r) * phiOf(size_t(q), size_t(r));
+            }
+            mPhi.push_back(phiOf(i, j));
+            mKernel.push_back(i < kCorners || j < kCorners ? 0 : sum);
+        }
+        for (size_t q = 0; q < kCorners; ++q) {
+            double sum = phiOf(q, i);
+            for (int r = 0; r < kCorners; ++r) sum -= share(i, r) * phiOf(q, size_t(r));
+            mCornerKernel.push_back(sum);
+        }
+    }
+}
+
+double SiteLattice::share(size_t site, int corner) const {
+    const SitePlace p = mPlaces[site];
+    const int steps = corner == 0 ? mSubdivisions - p.b - p.c : corner == 1 ? p.b : p.c;
+    return double(steps) / mSubdivisions;
+}
+
+glm::dvec2 SiteLattice::point(size_t site) const {
+    return domainPoint({share(site, 0), share(site, 1), share(site, 2)});
+}
+
+std::string SiteLattice::adopt(PatchSpline& spline) const {
+    if (mSubdivisions == kSiteSubdivisions) return {};
+    for (const uint8_t site : spline.sites) {
+        if (site >= size()) return "has a list of sites that cannot be";
+        spline.centres.push_back(glm::vec2(point(site)));
+    }
+    spline.sites.clear();
+    return {};
+}
+
+SiteBasis::SiteBasis(const SiteLattice& lattice, std::span<const uint8_t> sites,
+                     std::span<const uint8_t> counts)
+    : mLattice(&lattice),
+      mSites(sites.begin(), sites.end()),
+      mFunctions(sites.size() * lattice.size(), 0),
+      mSpreads(sites.size()) {
+    const size_t places = lattice.size();
     TESSERA_CHECK(size() >= kCorners && mSites[0] == 0 && mSites[1] == 1 && mSites[2] == 2);
     for (size_t k = 0; k < kCorners; ++k)
-        for (size_t s = 0; s < kCentreSites; ++s) mFunctions[k * kCentreSites + s] = share(s, int(k));
+        for (size_t s = 0; s < places; ++s) mFunctions[k * places + s] = lattice.share(s, int(k));
     std::array<bool, kCentreSites + 1> ends{};
     for (const uint8_t count : counts) ends[count] = true;
     ends[mSites.size()] = true;
 
-    Row power{};  // what the functions so far leave of the kernel's diagonal
-    for (size_t s = kCorners; s < kCentreSites; ++s) power[s] = tables().kernel[s][s];
+    // What the functions so far leave of the kernel's diagonal.
+    std::vector<double> power(places, 0), row(places);
+    for (size_t s = kCorners; s < places; ++s) power[s] = lattice.kernel(s)[s];
     size_t end = kCorners;
     for (size_t k = kCorners; k < mSites.size(); ++k) {
         if (k == end) {
@@ -140,14 +142,14 @@ SiteBasis::SiteBasis(std::span<const uint8_t> sites, std::span<const uint8_t> co
         const size_t site = mSites[k];
         const double left = power[site];
         TESSERA_CHECK(left > 0);  // the sites differ
-        Row row = tables().kernel[site];
+        std::ranges::copy(lattice.kernel(site), row.begin());
         for (size_t j = kCorners; j < k; ++j) {
-            const double* f = &mFunctions[j * kCentreSites];
+            const double* f = &mFunctions[j * places];
             const double factor = f[site] * mSpreads[j];
-            for (size_t s = 0; s < kCentreSites; ++s) row[s] -= factor * f[s];
+            for (size_t s = 0; s < places; ++s) row[s] -= factor * f[s];
         }
-        double* out = &mFunctions[k * kCentreSites];
-        for (size_t s = 0; s < kCentreSites; ++s) {
+        double* out = &mFunctions[k * places];
+        for (size_t s = 0; s < places; ++s) {
             out[s] = row[s] / left;
             power[s] -= out[s] * row[s];
         }
@@ -159,12 +161,12 @@ SiteBasis::SiteBasis(std::span<const uint8_t> sites, std::span<const uint8_t> co
     const size_t n = mSites.size();
     mProducts.resize(n * n);
     std::vector<double> atSite(n);
-    for (size_t s = 0; s < kCentreSites; ++s) {
-        for (size_t k = 0; k < n; ++k) atSite[k] = mFunctions[k * kCentreSites + s];
+    for (size_t s = 0; s < places; ++s) {
+        for (size_t k = 0; k < n; ++k) atSite[k] = mFunctions[k * places + s];
         for (size_t i = 0; i < n; ++i) {
-            const double weighted = tables().weight[s] * atSite[i];
-            double* row = &mProducts[i * n];
-            for (size_t j = 0; j <= i; ++j) row[j] += weighted * atSite[j];
+            const double weighted = lattice.weight(s) * atSite[i];
+            double* products = &mProducts[i * n];
+            for (size_t j = 0; j <= i; ++j) products[j] += weighted * atSite[j];
         }
     }
 }
@@ -193,10 +195,10 @@ std::vector<double> SiteBasis::values(const PatchSpline& spline, int c, int coun
     std::vector<double> values;
     for (int i = 0; i < count; ++i) {
         const size_t site = mSites[size_t(i)];
-        const glm::dvec2 at = centreSites()[site];
+        const glm::dvec2 at = mLattice->point(site);
         double sum = double(k[0]) + double(k[1]) * at.x + double(k[2]) * at.y;
         for (size_t j = 0; j < spline.terms[size_t(c)]; ++j)
-            sum += double(k[3 + j]) * tables().phi[spline.sites[j]][site];
+            sum += double(k[3 + j]) * mLattice->phi(spline.sites[j], site);
         values.push_back(sum);
     }
     return values;
@@ -206,7 +208,7 @@ std::vector<double> SiteBasis::factors(std::span<const double> values) const {
     std::vector<double> factors(values.begin(), values.end());
     for (size_t k = 0; k < factors.size(); ++k)
         for (size_t i = k + 1; i < factors.size(); ++i)
-            factors[i] -= factors[k] * mFunctions[k * kCentreSites + mSites[i]];
+            factors[i] -= factors[k] * mFunctions[k * mLattice->size() + mSites[i]];
     return factors;
 }
 
@@ -222,12 +224,12 @@ PatchSpline SiteBasis::spline(std::span<const std::vector<double>> factors) cons
             const size_t site = mSites[k];
             const double alpha = left[k] / (mSpreads[k] * mSpreads[k]);
             for (size_t j = kCorners; j < k; ++j)
-                left[j] -= alpha * mSpreads[j] * mSpreads[j] * mFunctions[j * kCentreSites + site];
+                left[j] -= alpha * mSpreads[j] * mSpreads[j] * mFunctions[j * mLattice->size() + site];
             // The kernel is phi less what makes it 0 at the corners.
             alphas[k] = alpha;
             for (size_t q = 0; q < kCorners; ++q) {
-                alphas[q] -= alpha * share(site, int(q));
-                left[q] -= alpha * tables().cornerKernel[site][q];
+                alphas[q] -= alpha * mLattice->share(site, int(q));
+                left[q] -= alpha * mLattice->cornerKernel(site, q);
             }
         }
         for (const double b :

@@ -8,37 +8,72 @@
 // the site of which the others tell least.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/mesh/tps.h"
 
 namespace tessera {
 
-// A site's place on the lattice: steps from corner a towards b and towards c.
+// A site's place on a lattice: steps from corner a towards b and towards c.
 struct SitePlace {
     int b = 0, c = 0;
 };
-const std::array<SitePlace, kCentreSites>& sitePlaces();
 
-// The sites around the domain's border, from corner a through b and c; side s has those from s *
-// kSiteSubdivisions on.
-constexpr int kBorderSites = 3 * kSiteSubdivisions;
-const std::array<uint8_t, kBorderSites>& borderSites();
+// The places that a file's sites are numbered by, in the order of centreSites(): the corners first, then row
+// by row.
+class SiteLattice {
+  public:
+    // Of files of this version: centreSites() from version 3 on, before it had 10 steps a side.
+    static const SiteLattice& ofVersion(uint32_t version);
+    static const SiteLattice& current();
+
+    explicit SiteLattice(int subdivisions);
+
+    int subdivisions() const { return mSubdivisions; }
+    size_t size() const { return mPlaces.size(); }  // at most kCentreSites
+    SitePlace place(size_t site) const { return mPlaces[site]; }
+    glm::dvec2 point(size_t site) const;
+    // The sites around the domain's border, from corner a through b and c; side s has those from s *
+    // subdivisions() on.
+    std::span<const uint8_t> border() const { return mBorder; }
+
+    // Gives a spline whose sites are of this lattice what it is in a mesh: where the lattice is an old one,
+    // centres of its own. Returns what is wrong with its sites, or empty.
+    std::string adopt(PatchSpline& spline) const;
+
+    double share(size_t site, int corner) const;  // barycentric coordinate
+    double phi(size_t i, size_t j) const { return mPhi[i * size() + j]; }
+    // Phi less what planes and the corners tell: positive semidefinite. A row has size() numbers.
+    std::span<const double> kernel(size_t i) const { return {mKernel.data() + i * size(), size()}; }
+    // Phi about a corner less its part at the corners.
+    double cornerKernel(size_t site, size_t corner) const { return mCornerKernel[3 * site + corner]; }
+    // Of a site in means over the domain: the trapezoidal rule.
+    double weight(size_t site) const { return mWeight[site]; }
+
+  private:
+    void fillKernels();
+
+    int mSubdivisions;
+    std::vector<SitePlace> mPlaces;
+    std::vector<uint8_t> mBorder;
+    std::vector<double> mPhi, mKernel, mCornerKernel, mWeight;
+};
 
 class SiteBasis {
   public:
-    // `sites` begin with the corners 0, 1, 2 and are all different. The first counts[c] of them are those of
+    // `sites` of the lattice, which must outlive this, begin with the corners 0, 1, 2 and are all different.
+    // The first counts[c] of them are those of
     // channel c; sites that belong to the same channels may come in any order.
-    SiteBasis(std::span<const uint8_t> sites, std::span<const uint8_t> counts);
+    SiteBasis(const SiteLattice& lattice, std::span<const uint8_t> sites, std::span<const uint8_t> counts);
 
     int size() const { return int(mSites.size()); }
     std::span<const uint8_t> sites() const { return mSites; }
     // Function k at all of the sites of the lattice.
     std::span<const double> function(int k) const {
-        return {mFunctions.data() + size_t(k) * kCentreSites, kCentreSites};
+        return {mFunctions.data() + size_t(k) * mLattice->size(), mLattice->size()};
     }
     // How much function k's factor varies where colours vary as the kernel has it; 0 at the corners.
     double spread(int k) const { return mSpreads[size_t(k)]; }
@@ -63,6 +98,7 @@ class SiteBasis {
     PatchSpline spline(std::span<const std::vector<double>> factors) const;
 
   private:
+    const SiteLattice* mLattice;
     std::vector<uint8_t> mSites;
     std::vector<double> mFunctions;
     std::vector<double> mSpreads;

@@ -12,7 +12,7 @@ namespace tessera {
 namespace {
 
 // Seams count this much against a pixel: about as much as a solve of the whole picture comes to.
-constexpr double kSeamWeight = 4;
+constexpr double kSeamWeight = 1;
 
 // The centres that a patch has; those of splines without sites are made anew.
 SiteChoice choiceOf(const PatchSpline& spline, int channels) {

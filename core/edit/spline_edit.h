@@ -39,7 +39,7 @@ class SplineRefit {
     SplineRefit(SplineRefit&&) noexcept;
     SplineRefit& operator=(SplineRefit&&) noexcept;
 
-    // Where the values are: the 66 sites, in the order of centreSites().
+    // Where the values are: the sites, in the order of centreSites().
     static const std::vector<Barycentric>& barycentrics();
     static const DomainPoints& points();
 

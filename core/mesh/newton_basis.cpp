@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/vector_clones.h"
 
 namespace tessera {
 
@@ -24,6 +25,31 @@ double kernel(glm::dvec2 a, glm::dvec2 b) {
     return tpsKernel(d.x * d.x + d.y * d.y);
 }
 
+// Where functions are asked for, and where their values go.
+struct PointBlock {
+    const float *x, *y;
+    size_t count;
+    float* out;
+    size_t stride;
+};
+
+// The Newton functions from the kernels, kernels[j * kernelStride + i]: their coefficients are a triangle.
+TESSERA_VECTOR_CLONES
+void combine(const double* coefficients, size_t functions, const double* kernels, size_t kernelStride,
+             PointBlock to) {
+    std::vector<double> sum(to.count);
+    for (size_t k = 0; k < functions; ++k) {
+        const double *b0 = coefficients + k, *b1 = b0 + functions, *b2 = b1 + functions;
+        for (size_t i = 0; i < to.count; ++i) sum[i] = *b0 + *b1 * double(to.x[i]) + *b2 * double(to.y[i]);
+        for (size_t j = 0; k >= kCorners && j <= k; ++j) {
+            const double alpha = coefficients[(kPolynomials + j) * functions + k];
+            const double* from = kernels + j * kernelStride;
+            for (size_t i = 0; i < to.count; ++i) sum[i] += alpha * from[i];
+        }
+        for (size_t i = 0; i < to.count; ++i) to.out[k * to.stride + i] = float(sum[i]);
+    }
+}
+
 }  // namespace
 
 NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
@@ -33,7 +59,7 @@ NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
     const int n = size();
     TESSERA_CHECK(n >= kCorners && mSites[0] == 0 && mSites[1] == 1 && mSites[2] == 2);
     const auto& places = centreSites();
-    for (const uint8_t s : mSites) mCentres.push_back(glm::vec2(places[s]));
+    for (const uint8_t s : mSites) mCentres.push_back(places[s]);
     for (int k = 0; k < kCorners; ++k)
         for (int row = 0; row < kPolynomials; ++row)
             coefficient(row, k) = kBarycentric[size_t(k)][size_t(row)];
@@ -96,20 +122,13 @@ NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
 
 void NewtonBasis::evaluate(const float* x, const float* y, size_t count, float* out, size_t stride) const {
     TESSERA_CHECK(count <= stride);
-    const int n = size();
-    std::vector<float> kernels(mCentres.size() * stride);
-    evaluateKernels(mCentres, x, y, count, kernels.data(), stride);
-    for (int k = 0; k < n; ++k) {
-        float* to = out + size_t(k) * stride;
-        const auto b0 = float(coefficient(0, k)), b1 = float(coefficient(1, k)),
-                   b2 = float(coefficient(2, k));
-        for (size_t i = 0; i < count; ++i) to[i] = b0 + b1 * x[i] + b2 * y[i];
-        if (k < kCorners) continue;
-        for (int j = 0; j <= k; ++j) {
-            const auto alpha = float(coefficient(kPolynomials + j, k));
-            const float* from = kernels.data() + size_t(j) * stride;
-            for (size_t i = 0; i < count; ++i) to[i] += alpha * from[i];
-        }
+    constexpr size_t kBlock = 64;  // points whose kernels the nearest cache holds
+    std::vector<double> kernels(mCentres.size() * kBlock);
+    for (size_t first = 0; first < count; first += kBlock) {
+        const size_t points = std::min(kBlock, count - first);
+        evaluateKernels(mCentres, x + first, y + first, points, kernels.data(), kBlock);
+        combine(mCoefficients.data(), mSites.size(), kernels.data(), kBlock,
+                {x + first, y + first, points, out + first, stride});
     }
 }
 
@@ -156,26 +175,22 @@ PatchSpline NewtonBasis::spline(std::span<const std::span<const double>> factors
     return result;
 }
 
-void evaluateSiteFunctions(const float* x, const float* y, size_t count, float* out, size_t stride) {
-    TESSERA_CHECK(count <= stride);
-    static const std::vector<glm::vec2> kSites(centreSites().begin(), centreSites().end());
-    static const std::vector<glm::vec3> kShares = [] {
-        std::vector<glm::vec3> shares;
-        for (const glm::dvec2 s : centreSites()) shares.push_back(glm::vec3(barycentricOf(s)));
-        return shares;
-    }();
-    evaluateKernels(kSites, x, y, count, out, stride);
-    const float *a = out, *b = out + stride, *c = out + 2 * stride;
-    for (size_t s = kCorners; s < kSites.size(); ++s) {
-        float* to = out + s * stride;
-        const glm::vec3 l = kShares[s];
+void evaluateSiteFunctions(std::span<const uint8_t> sites, const float* x, const float* y, size_t count,
+                           double* out, size_t stride) {
+    TESSERA_CHECK(count <= stride && sites.size() >= kCorners);
+    std::vector<glm::dvec2> places;
+    for (const uint8_t s : sites) places.push_back(centreSites()[s]);
+    evaluateKernels(places, x, y, count, out, stride);
+    const double *a = out, *b = out + stride, *c = out + 2 * stride;
+    for (size_t k = kCorners; k < sites.size(); ++k) {
+        double* to = out + k * stride;
+        const Barycentric l = barycentricOf(places[k]);
         for (size_t i = 0; i < count; ++i) to[i] -= l.x * a[i] + l.y * b[i] + l.z * c[i];
     }
     for (size_t j = 0; j < kCorners; ++j) {
-        const auto b0 = float(kBarycentric[j][0]), b1 = float(kBarycentric[j][1]),
-                   b2 = float(kBarycentric[j][2]);
-        float* to = out + j * stride;
-        for (size_t i = 0; i < count; ++i) to[i] = b0 + b1 * x[i] + b2 * y[i];
+        const auto [b0, b1, b2] = kBarycentric[j];
+        double* to = out + j * stride;
+        for (size_t i = 0; i < count; ++i) to[i] = b0 + b1 * double(x[i]) + b2 * double(y[i]);
     }
 }
 

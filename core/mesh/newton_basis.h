@@ -27,7 +27,7 @@ class NewtonBasis {
     // are orthogonal in it, so that a spline's is the sum of energy(k) times its factors squared.
     double energy(int k) const { return mEnergies[size_t(k)]; }
 
-    // The functions at `count` points of the domain: out[k * stride + i] is function k at point i.
+    // The functions at `count` points of the domain, rounded: out[k * stride + i] is function k at point i.
     void evaluate(const float* x, const float* y, size_t count, float* out, size_t stride) const;
     // The functions and their derivatives along the domain's axes at one point.
     void evaluateWithDerivatives(glm::dvec2 at, double* values, double* alongX, double* alongY) const;
@@ -43,14 +43,15 @@ class NewtonBasis {
     }
 
     std::vector<uint8_t> mSites;
-    std::vector<glm::vec2> mCentres;
+    std::vector<glm::dvec2> mCentres;
     std::vector<double> mCoefficients;
     std::vector<double> mEnergies;
 };
 
 // What a spline may be made of: the barycentric coordinates, and for each further site the spline with alpha
 // 1 there and the alphas at the corners that the side conditions ask for. Values at `count` points:
-// out[s * stride + i] for site s.
-void evaluateSiteFunctions(const float* x, const float* y, size_t count, float* out, size_t stride);
+// out[k * stride + i] for sites[k]; the first three sites are the corners.
+void evaluateSiteFunctions(std::span<const uint8_t> sites, const float* x, const float* y, size_t count,
+                           double* out, size_t stride);
 
 }  // namespace tessera

@@ -25,7 +25,8 @@ size_t PatchMesh::bytesBeyond(const PatchMesh& other) const {
     };
     return mConnectivity.bytesBeyond(other.mConnectivity) + mPositions.bytesBeyond(other.mPositions) +
            mCurves.bytesBeyond(other.mCurves) + mInteriors.bytesBeyond(other.mInteriors) +
-           mSplines.bytesBeyond(other.mSplines, ofSpline) + mAttributes.bytesBeyond(other.mAttributes) + ofVector(mSmoothJoins);
+           mSplines.bytesBeyond(other.mSplines, ofSpline) + mAttributes.bytesBeyond(other.mAttributes) +
+           ofVector(mSmoothJoins);
 }
 
 BezierCurve toPixels(const std::array<LatticePoint, 4>& c) {

@@ -1,5 +1,5 @@
 // Splines at many points with vector instructions: the fast twin of evaluateSpline (COLOUR.md; paper Eqs. 2
-// and 3).
+// and 3). (evaluateKernels, which fits use, is in tps_kernels.cpp.)
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -184,19 +184,6 @@ void evaluateSplinesScalar(const PatchSpline& spline, int channels, const float*
                            size_t count, float* const* out) {
     TESSERA_CHECK(channels >= 1 && channels <= kMaxChannels);
     evaluateScalar(Packed(spline, channels), channels, x, y, count, out);
-}
-
-#if defined(__x86_64__)
-__attribute__((target_clones("avx2", "default")))
-#endif
-void evaluateKernels(std::span<const glm::vec2> centres, const float* x, const float* y, size_t count, float* out, size_t stride) {
-    for (const glm::vec2 c : centres) {
-        for (size_t k = 0; k < count; ++k) {
-            const float dx = x[k] - c.x, dy = y[k] - c.y;
-            out[k] = kHalfLog2 * scaledKernel(dx * dx + dy * dy);
-        }
-        out += stride;
-    }
 }
 
 const char* splineInstructionSet() {

@@ -299,8 +299,8 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
 void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
     const HalfedgeMesh& mesh = mMesh.connectivity();
     constexpr double kSamplesPerPx = .7;
-    // Sites are a tenth of an edge apart: fewer points would let colours swing between them.
-    constexpr int kLeast = 11, kMost = 21;
+    // As many as sites along an edge: fewer points would let colours swing between them.
+    constexpr int kLeast = kSiteSubdivisions + 1, kMost = 2 * kSiteSubdivisions + 1;
     std::vector<HalfedgeId> halfedges;  // of m.seams
     uint32_t rows = m.pixelRows;
     m.seamStride = weights.gradient > 0 ? 2 : 1;

@@ -7,6 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/vector_clones.h"
 #include "core/mesh/tps.h"
 
 namespace tessera {
@@ -105,10 +106,8 @@ struct Sampled {
     float values[kMaxChannels][kMostPlaces];
 };
 
-// The same arithmetic with and without AVX2, so that results do not depend on the machine.
-__attribute__((target_clones("avx2", "default"))) void findPoints(const float* cubic, const float* quadratic,
-                                                                  size_t padded, const Coefficients& c,
-                                                                  Sampled& out) {
+TESSERA_VECTOR_CLONES void findPoints(const float* cubic, const float* quadratic, size_t padded,
+                                      const Coefficients& c, Sampled& out) {
     for (size_t k = 0; k < padded; k += kLanes) {
         Vector x = {}, y = {}, vx = {}, vy = {}, wx = {}, wy = {};
         for (size_t i = 0; i < 10; ++i) {
@@ -156,12 +155,10 @@ inline __attribute__((always_inline)) double residual(const float* polynomial, s
     return double(total(error));
 }
 
-__attribute__((target_clones("avx2", "default"))) double residual3(const float* polynomial, size_t padded,
-                                                                   const Sampled& s) {
+TESSERA_VECTOR_CLONES double residual3(const float* polynomial, size_t padded, const Sampled& s) {
     return residual<3>(polynomial, padded, s);
 }
-__attribute__((target_clones("avx2", "default"))) double residual4(const float* polynomial, size_t padded,
-                                                                   const Sampled& s) {
+TESSERA_VECTOR_CLONES double residual4(const float* polynomial, size_t padded, const Sampled& s) {
     return residual<4>(polynomial, padded, s);
 }
 

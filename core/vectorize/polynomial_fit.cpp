@@ -6,14 +6,12 @@
 #include <cstring>
 
 #include "core/base/check.h"
+#include "core/base/vector_clones.h"
 #include "core/mesh/tps.h"
 
-// All of error() is built twice, with and without AVX2. Both do the same arithmetic, so that results do not
-// depend on the machine.
 // No vector crosses a call, for whose conventions the compiler warns: what has vectors is inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define TESSERA_INLINE inline __attribute__((always_inline))
-#define TESSERA_CLONES __attribute__((target_clones("avx2", "default")))
 
 namespace tessera {
 
@@ -395,10 +393,10 @@ TESSERA_INLINE double errorOf(const Pixels& p, const Frame& f, std::span<const g
     return residual(sums);
 }
 
-TESSERA_CLONES double error3(const Pixels& p, const Frame& f, std::span<const glm::dvec2> outline) {
+TESSERA_VECTOR_CLONES double error3(const Pixels& p, const Frame& f, std::span<const glm::dvec2> outline) {
     return errorOf<3>(p, f, outline);
 }
-TESSERA_CLONES double error4(const Pixels& p, const Frame& f, std::span<const glm::dvec2> outline) {
+TESSERA_VECTOR_CLONES double error4(const Pixels& p, const Frame& f, std::span<const glm::dvec2> outline) {
     return errorOf<4>(p, f, outline);
 }
 

@@ -13,8 +13,8 @@ namespace tessera {
 
 namespace {
 
-using Eigen::MatrixXf;
-using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Eigen::MatrixXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 constexpr int kCorners = 3;
 
 // By channel, the squared error with 3, 4, ... sites.
@@ -24,21 +24,27 @@ using ErrorCurves = std::array<std::vector<float>, kMaxChannels>;
 // Cholesky factorization of the Gram matrix of all sites' functions.
 class Pursuit {
   public:
-    Pursuit(const PatchPixels& pixels, const Image& picture, int maxTerms)
-        : mTaken(kCentreSites, maxTerms), mChannels(picture.channels()) {
+    // Among `sites`, of which the corners are the first.
+    Pursuit(const PatchPixels& pixels, const Image& picture, std::span<const uint8_t> sites, int maxTerms)
+        : mSites(sites),
+          mTaken(Eigen::Index(sites.size()), maxTerms),
+          mUsed(sites.size(), false),
+          mChannels(picture.channels()) {
+        const auto functions = Eigen::Index(sites.size());
         const auto count = Eigen::Index(pixels.pixels.size());
-        RowMajor rows(kCentreSites, count);
-        evaluateSiteFunctions(pixels.x.data(), pixels.y.data(), size_t(count), rows.data(), size_t(count));
-        MatrixXf targets(count, mChannels);
+        RowMajor rows(functions, count);
+        evaluateSiteFunctions(sites, pixels.x.data(), pixels.y.data(), size_t(count), rows.data(),
+                              size_t(count));
+        MatrixXd targets(count, mChannels);
         for (Eigen::Index k = 0; k < count; ++k)
             for (int c = 0; c < mChannels; ++c)
-                targets(k, c) = picture.plane(c)[pixels.pixels[size_t(k)].index];
-        mGram = MatrixXf::Zero(kCentreSites, kCentreSites);
+                targets(k, c) = double(picture.plane(c)[pixels.pixels[size_t(k)].index]);
+        mGram = MatrixXd::Zero(functions, functions);
         mGram.selfadjointView<Eigen::Lower>().rankUpdate(rows);
         mGram.triangularView<Eigen::StrictlyUpper>() = mGram.transpose();
         mProducts = rows * targets;
         mNorm = mOwn = mGram.diagonal();
-        mLeft = targets.cast<double>().colwise().squaredNorm();
+        mLeft = targets.colwise().squaredNorm();
     }
 
     void run(int most, std::vector<uint8_t>& sites, ErrorCurves& errors) {
@@ -46,23 +52,24 @@ class Pursuit {
             const int site = k < kCorners ? k : best();
             if (site < 0) return;
             take(site, k);
-            sites.push_back(uint8_t(site));
+            sites.push_back(mSites[size_t(site)]);
             if (k + 1 < kCorners) continue;
             for (int c = 0; c < mChannels; ++c) errors[size_t(c)].push_back(float(mLeft(c)));
         }
     }
 
   private:
-    // What is left of a function, once those taken are out of it, must be more than rounding.
-    static constexpr float kDependent = 1e-4F;
+    // What is left of a function, once those taken are out of it, must be more than what a renderer's floats
+    // make of it.
+    static constexpr double kDependent = 1e-6;
     bool independent(int site) const { return mNorm(site) >= kDependent * mOwn(site) && mNorm(site) > 0; }
 
     int best() const {
         int found = -1;
-        float most = 0;
-        for (int s = kCorners; s < kCentreSites; ++s) {
+        double most = 0;
+        for (int s = kCorners; s < int(mSites.size()); ++s) {
             if (mUsed[size_t(s)] || !independent(s)) continue;
-            const float gain = mProducts.row(s).squaredNorm() / mNorm(s);
+            const double gain = mProducts.row(s).squaredNorm() / mNorm(s);
             if (gain > most) {
                 most = gain;
                 found = s;
@@ -78,20 +85,20 @@ class Pursuit {
             column.setZero();
             return;
         }
-        const float root = std::sqrt(mNorm(site));
+        const double root = std::sqrt(mNorm(site));
         column = mGram.col(site);
         column.noalias() -= mTaken.leftCols(k) * mTaken.row(site).head(k).transpose();
         column /= root;
-        const Eigen::RowVectorXf z = mProducts.row(site) / root;
+        const Eigen::RowVectorXd z = mProducts.row(site) / root;
         mProducts.noalias() -= column * z;
         mNorm -= column.cwiseAbs2();
-        for (int c = 0; c < mChannels; ++c) mLeft(c) -= double(z(c)) * double(z(c));
+        for (int c = 0; c < mChannels; ++c) mLeft(c) -= z(c) * z(c);
     }
 
-    MatrixXf mGram, mProducts, mTaken;  // products (sites x channels) with what is left of the picture
-    Eigen::VectorXf mNorm, mOwn;
-    Eigen::VectorXd mLeft;
-    std::array<bool, kCentreSites> mUsed{};
+    std::span<const uint8_t> mSites;    // all others here are by place in it
+    MatrixXd mGram, mProducts, mTaken;  // products (sites x channels) with what is left of the picture
+    Eigen::VectorXd mNorm, mOwn, mLeft;
+    std::vector<bool> mUsed;
     int mChannels;
 };
 
@@ -124,6 +131,21 @@ void spend(const PatchMesh& mesh, const std::vector<ErrorCurves>& errors, double
     choose(high);
 }
 
+// What a search for so many terms a patch chooses from: few do not need places that lie close, and cost a
+// multiple of the time with them.
+std::vector<uint8_t> candidates(double termsPerPatch) {
+    constexpr double kFewTerms = 36;
+    const int stride = termsPerPatch <= kFewTerms ? 2 : 1;
+    static_assert(kSiteSubdivisions % 2 == 0);
+    std::vector<uint8_t> sites;
+    for (int s = 0; s < kCentreSites; ++s) {
+        const Barycentric b = barycentricOf(centreSites()[size_t(s)]);
+        const auto steps = [](double share) { return int(std::lround(share * kSiteSubdivisions)); };
+        if (steps(b.y) % stride == 0 && steps(b.z) % stride == 0) sites.push_back(uint8_t(s));
+    }
+    return sites;
+}
+
 }  // namespace
 
 std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, double termsPerPatch,
@@ -132,14 +154,15 @@ std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture,
     std::vector<SiteChoice> choices(capacity);
     std::vector<ErrorCurves> errors(capacity);
     const PixelSampler sampler(mesh, 1);
+    const std::vector<uint8_t> sites = candidates(termsPerPatch);
     parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
         PatchPixels pixels;
         for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
             sampler.sample(i, pixels);
             if (pixels.pixels.empty()) continue;
             const uint32_t p = sampler.patches()[i].index;
-            const int most = std::clamp(int(pixels.pixels.size()), kCorners, kCentreSites);
-            Pursuit(pixels, picture, most).run(most, choices[p].sites, errors[p]);
+            const int most = std::clamp(int(pixels.pixels.size()), kCorners, int(sites.size()));
+            Pursuit(pixels, picture, sites, most).run(most, choices[p].sites, errors[p]);
         }
     });
     if (progress.stopRequested()) return {};

@@ -11,6 +11,7 @@
 #include "core/document/chunk_file.h"
 #include "core/document/codec.h"
 #include "core/document/colour_codec.h"
+#include "core/document/site_basis.h"
 #include "core/document/xxhash64.h"
 #include "tests/support/random_documents.h"
 
@@ -587,8 +588,8 @@ TEST_F(FixtureOfVersion1, StoresAsTheNewestVersionWithoutLoss) {
     EXPECT_EQ(encoded(back), stored);
 }
 
-// The same of version 2, with splines on sites, in the opponent basis.
-TEST(FixtureOfVersion2, LoadsWithItsNumbersAndStoresToItsOwnBytes) {
+// The same of version 2, with splines on the sites of its lattice, in the opponent basis.
+TEST(FixtureOfVersion2, LoadsWithItsNumbersAndStoresAndLoadsUnchanged) {
     std::ifstream file(TESSERA_TEST_DATA "/v2.tessera", std::ios::binary);
     const std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
     EXPECT_EQ(chunkFileVersion(bytes), 2u);
@@ -611,11 +612,18 @@ TEST(FixtureOfVersion2, LoadsWithItsNumbersAndStoresToItsOwnBytes) {
                                                           {21196, 35863},
                                                           {19665, 33288},
                                                           {22376, 34549}}}));
+    const SiteLattice& lattice = SiteLattice::ofVersion(2);
+    const auto siteAt = [&](glm::vec2 centre) {
+        size_t site = 0;
+        while (site < lattice.size() && glm::vec2(lattice.point(site)) != centre) ++site;
+        return site;
+    };
     size_t sites = 0, weighted = 0;
     mesh.forEachPatch([&](PatchId p) {
         const PatchSpline& spline = mesh.spline(p);
-        sites += spline.sites.size();
-        for (size_t i = 0; i < spline.sites.size(); ++i) weighted += (i + 1) * spline.sites[i];
+        EXPECT_TRUE(spline.sites.empty());
+        sites += spline.centres.size();
+        for (size_t i = 0; i < spline.centres.size(); ++i) weighted += (i + 1) * siteAt(spline.centres[i]);
     });
     EXPECT_EQ(sites, 1345u);
     EXPECT_EQ(weighted, 728923u);
@@ -629,6 +637,36 @@ TEST(FixtureOfVersion2, LoadsWithItsNumbersAndStoresToItsOwnBytes) {
     EXPECT_NEAR(value(20, 0), .18018786, 1e-5);
     EXPECT_NEAR(value(46, 1), .469969158, 1e-5);
     EXPECT_EQ(d.difference->psnr, 31.25);
+    const auto stored = encoded(d);
+    Document back = decoded(stored);
+    mesh.forEachPatch([&](PatchId p) { EXPECT_EQ(back.mesh.spline(p), mesh.spline(p)); });
+    EXPECT_EQ(encoded(back), stored);
+}
+
+// And of version 3, with sites of the finer lattice.
+TEST(FixtureOfVersion3, LoadsWithItsNumbersAndStoresToItsOwnBytes) {
+    std::ifstream file(TESSERA_TEST_DATA "/v3.tessera", std::ios::binary);
+    const std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_EQ(chunkFileVersion(bytes), 3u);
+    Document d = decoded(bytes);
+    const PatchMesh& mesh = d.mesh;
+    EXPECT_EQ(mesh.patchCount(), 59u);
+    EXPECT_EQ(mesh.connectivity().vertexCount(), 37u);
+    EXPECT_EQ(mesh.channels(), 4);
+    size_t sites = 0, weighted = 0;
+    mesh.forEachPatch([&](PatchId p) {
+        const PatchSpline& spline = mesh.spline(p);
+        sites += spline.sites.size();
+        for (size_t i = 0; i < spline.sites.size(); ++i) weighted += (i + 1) * spline.sites[i];
+    });
+    EXPECT_EQ(sites, 1440u);
+    EXPECT_EQ(weighted, 1602709u);
+    const auto value = [&](uint32_t p, int c) {
+        return evaluateSpline(mesh.spline(PatchId(p)), c, {.5, .2});
+    };
+    EXPECT_NEAR(value(1, 0), .744115278, 1e-5);
+    EXPECT_NEAR(value(20, 1), .0292031701, 1e-5);
+    EXPECT_NEAR(value(46, 3), 1.00016266, 1e-5);
     EXPECT_EQ(encoded(d), bytes);
 }
 

@@ -140,7 +140,7 @@ TEST(EditChunks, RefuseWhatCannotBe) {
     EXPECT_EQ(decodePatchAttributes(attributes, mesh), "");
     EXPECT_EQ(decodeColourBreaks(breaks, mesh), "");
     EXPECT_EQ(decodeSelections(selections, mesh, names), "");
-    EXPECT_EQ(decodeFitted(fitted, mesh, then), "");
+    EXPECT_EQ(decodeFitted(fitted, kFormatVersion, mesh, then), "");
     // Every shorter one is cut short somewhere.
     const auto cut = [](const std::vector<uint8_t>& all, size_t n) {
         return std::span<const uint8_t>(all).first(n);
@@ -152,7 +152,8 @@ TEST(EditChunks, RefuseWhatCannotBe) {
         names.clear();
         EXPECT_NE(decodeSelections(cut(selections, n), mesh, names), "");
     }
-    for (size_t n = 0; n < fitted.size(); n += 7) EXPECT_NE(decodeFitted(cut(fitted, n), mesh, then), "");
+    for (size_t n = 0; n < fitted.size(); n += 7)
+        EXPECT_NE(decodeFitted(cut(fitted, n), kFormatVersion, mesh, then), "");
     // Ids beyond the mesh, and none twice.
     auto wrong = attributes;
     wrong[4 + 3] = 0xFF;
@@ -184,7 +185,7 @@ TEST(EditChunks, DamageNeverBreaksAMesh) {
         for (int k = 0; k < 3; ++k)
             damaged[random() % std::min<size_t>(damaged.size(), 400)] = uint8_t(random());
         std::optional<PatchMesh> then;
-        if (!decodeFitted(damaged, back->mesh, then).empty()) continue;
+        if (!decodeFitted(damaged, kFormatVersion, back->mesh, then).empty()) continue;
         ++accepted;
         if (accepted % 8 != 1) continue;
         PatchMesh mesh = back->mesh;

@@ -73,7 +73,7 @@ TEST_F(FittedDocument, LosesATenthOfADecibel) {
     EXPECT_GT(d.difference->psnr - psnrOf(decodeDocument(*fewer)->mesh, image), .2);
 }
 
-TEST_F(FittedDocument, TakesAByteAFactor) {
+TEST_F(FittedDocument, TakesAboutAByteAFactorAndItsSite) {
     Document d = fitted;
     const auto bytes = encodeDocument(d);
     ASSERT_TRUE(bytes);
@@ -81,7 +81,7 @@ TEST_F(FittedDocument, TakesAByteAFactor) {
     d.mesh.forEachPatch([&](PatchId p) {
         for (size_t c = 0; c < 3; ++c) factors += std::max<size_t>(3, d.mesh.spline(p).terms[c]);
     });
-    EXPECT_LT(bytes->size(), factors);
+    EXPECT_LT(double(bytes->size()), 1.1 * double(factors));
 }
 
 TEST_F(FittedDocument, OfUnknownErrorLosesLess) {
@@ -101,7 +101,8 @@ TEST_F(FittedDocument, KeepsTheSumOfTheSquaredErrorsForAllPatchSizes) {
             const PatchSpline& spline = fitted.mesh.spline(p);
             const FactorColour colour = quantizedFactors(spline, 3, step, area);
             ASSERT_FALSE(colour.exact);
-            const PatchSpline back = FactorBasis(colour, 3, step, area).spline(colour.factors);
+            const PatchSpline back =
+                FactorBasis(SiteLattice::current(), colour, 3, step, area).spline(colour.factors);
             constexpr int kGrid = 30;
             for (int c = 0; c < 3; ++c) {
                 promised += 1 / std::pow(factorStep(1, colour.counts[size_t(c)]) / step, 2);

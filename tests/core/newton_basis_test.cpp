@@ -5,6 +5,9 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
 
 namespace tessera {
 namespace {
@@ -95,13 +98,33 @@ TEST(SiteFunctions, SpanTheNewtonFunctions) {
     // Function 3 of the basis is a multiple of the site's function less a plane: compare second differences.
     const NewtonBasis basis(kSites);
     const std::array<float, 3> x{.3F, .4F, .5F}, y{.2F, .25F, .3F};
-    std::vector<float> sites(kCentreSites * 3), newton(kSites.size() * 3);
-    evaluateSiteFunctions(x.data(), y.data(), 3, sites.data(), 3);
+    std::vector<double> sites(kCentreSites * 3);
+    std::vector<float> newton(kSites.size() * 3);
+    std::vector<uint8_t> all(kCentreSites);
+    std::iota(all.begin(), all.end(), uint8_t{0});
+    evaluateSiteFunctions(all, x.data(), y.data(), 3, sites.data(), 3);
     basis.evaluate(x.data(), y.data(), 3, newton.data(), 3);
-    const auto bend = [](const float* v) { return double(v[0]) - 2 * double(v[1]) + double(v[2]); };
+    const auto bend = [](const auto* v) { return double(v[0]) - 2 * double(v[1]) + double(v[2]); };
     const double factor = bend(newton.data() + 9) / bend(sites.data() + 3 * size_t(kSites[3]));
     EXPECT_NEAR(factor, basis.energy(3), 1e-2 * factor);
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(sites[i] + sites[3 + i] + sites[6 + i], 1, 1e-6);
+}
+
+TEST(Kernels, AreThoseOfTheSplines) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(0, 1);
+    std::vector<float> x{0, 1, .5F}, y{0, 0, float(kDomainHeight)};
+    while (x.size() < 300) {
+        x.push_back(unit(random));
+        y.push_back(unit(random));
+    }
+    std::vector<double> phi(size_t(kCentreSites) * x.size());
+    evaluateKernels(centreSites(), x.data(), y.data(), x.size(), phi.data(), x.size());
+    for (size_t s = 0; s < size_t(kCentreSites); ++s)
+        for (size_t i = 0; i < x.size(); ++i) {
+            const glm::dvec2 d = glm::dvec2(double(x[i]), double(y[i])) - centreSites()[s];
+            EXPECT_NEAR(phi[s * x.size() + i], tpsKernel(d.x * d.x + d.y * d.y), 1e-13);
+        }
 }
 
 }  // namespace

@@ -19,30 +19,53 @@ std::vector<uint8_t> randomSites(size_t count, std::mt19937& random) {
     return sites;
 }
 
-TEST(SitePlaces, AreTheSites) {
-    for (size_t s = 0; s < kCentreSites; ++s) {
-        const SitePlace p = sitePlaces()[s];
-        const double v = p.b / 10.0, w = p.c / 10.0;
-        const glm::dvec2 d = domainPoint({1 - v - w, v, w}) - centreSites()[s];
+const SiteLattice& kLattice = SiteLattice::current();
+
+TEST(SiteLattice, IsThatOfTheCentreSites) {
+    ASSERT_EQ(kLattice.size(), size_t(kCentreSites));
+    for (size_t s = 0; s < kLattice.size(); ++s) {
+        const glm::dvec2 d = kLattice.point(s) - centreSites()[s];
         EXPECT_LT(std::abs(d.x) + std::abs(d.y), 1e-12);
     }
+    EXPECT_EQ(&SiteLattice::ofVersion(3), &kLattice);
 }
 
-TEST(BorderSites, RunOnceAroundTheDomain) {
-    const auto& border = borderSites();
-    for (size_t i = 0; i < border.size(); ++i) {
-        const SitePlace p = sitePlaces()[border[i]], q = sitePlaces()[border[(i + 1) % border.size()]];
-        const int side = int(i) / 10;
-        EXPECT_EQ(q.b - p.b, side == 0 ? 1 : side == 1 ? -1 : 0) << i;
-        EXPECT_EQ(q.c - p.c, side == 0 ? 0 : side == 1 ? 1 : -1) << i;
+TEST(SiteLattice, HadTenStepsASideBeforeVersion3) {
+    const SiteLattice& old = SiteLattice::ofVersion(2);
+    EXPECT_EQ(old.subdivisions(), 10);
+    EXPECT_EQ(old.size(), 66u);
+    PatchSpline spline;
+    spline.sites = {0, 1, 2, 3, 12};
+    ASSERT_EQ(old.adopt(spline), "");
+    EXPECT_TRUE(spline.sites.empty());
+    EXPECT_EQ(spline.centres[3], glm::vec2(domainPoint({.9, .1, 0})));
+    EXPECT_EQ(spline.centres[4], glm::vec2(domainPoint({.9, 0, .1})));
+    PatchSpline beyond;
+    beyond.sites = {0, 1, 2, 66};
+    EXPECT_NE(old.adopt(beyond), "");
+    EXPECT_EQ(kLattice.adopt(beyond), "");
+    EXPECT_EQ(beyond.sites.size(), 4u);
+}
+
+TEST(SiteLattice, HasABorderThatRunsOnceAroundTheDomain) {
+    for (const uint32_t version : {2u, 3u}) {
+        const SiteLattice& lattice = SiteLattice::ofVersion(version);
+        const auto border = lattice.border();
+        ASSERT_EQ(border.size(), size_t(3 * lattice.subdivisions()));
+        for (size_t i = 0; i < border.size(); ++i) {
+            const SitePlace p = lattice.place(border[i]), q = lattice.place(border[(i + 1) % border.size()]);
+            const int side = int(i) / lattice.subdivisions();
+            EXPECT_EQ(q.b - p.b, side == 0 ? 1 : side == 1 ? -1 : 0) << i;
+            EXPECT_EQ(q.c - p.c, side == 0 ? 0 : side == 1 ? 1 : -1) << i;
+        }
+        EXPECT_EQ(border[0], 0);
     }
-    EXPECT_EQ(border[0], 0);
 }
 
 TEST(SiteBasis, IsTheNewtonBasisOfItsOrder) {
     std::mt19937 random(1);
-    for (const size_t count : {3u, 4u, 12u, 30u, 66u}) {
-        const SiteBasis basis(randomSites(count, random), {});
+    for (const size_t count : {3u, 4u, 12u, 30u, 66u, unsigned(kCentreSites)}) {
+        const SiteBasis basis(kLattice, randomSites(count, random), {});
         const NewtonBasis newton(basis.sites());
         std::vector<double> values(count), dx(count), dy(count);
         for (size_t s = 0; s < kCentreSites; ++s) {
@@ -56,7 +79,7 @@ TEST(SiteBasis, DoesNotDependOnTheOrderWithinAGroup) {
     std::mt19937 random(2);
     auto sites = randomSites(25, random);
     const std::vector<uint8_t> counts{25, 9, 3};
-    const SiteBasis basis(sites, counts);
+    const SiteBasis basis(kLattice, sites, counts);
     const auto sorted = [](std::span<const uint8_t> part) {
         std::vector<uint8_t> all(part.begin(), part.end());
         std::sort(all.begin(), all.end());
@@ -66,17 +89,17 @@ TEST(SiteBasis, DoesNotDependOnTheOrderWithinAGroup) {
     for (int i = 0; i < 20; ++i) {
         std::shuffle(sites.begin() + 3, sites.begin() + 9, random);
         std::shuffle(sites.begin() + 9, sites.end(), random);
-        EXPECT_TRUE(std::ranges::equal(SiteBasis(sites, counts).sites(), basis.sites()));
+        EXPECT_TRUE(std::ranges::equal(SiteBasis(kLattice, sites, counts).sites(), basis.sites()));
     }
     std::swap(sites[5], sites[15]);
-    EXPECT_FALSE(std::ranges::equal(SiteBasis(sites, counts).sites(), basis.sites()));
+    EXPECT_FALSE(std::ranges::equal(SiteBasis(kLattice, sites, counts).sites(), basis.sites()));
 }
 
 TEST(SiteBasis, FactorsAndSplinesAreEachOthersInverse) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> unit(-1, 1);
     for (const size_t count : {3u, 5u, 20u, 66u}) {
-        const SiteBasis basis(randomSites(count, random), {});
+        const SiteBasis basis(kLattice, randomSites(count, random), {});
         std::vector<double> values;
         for (size_t i = 0; i < count; ++i) values.push_back(unit(random));
         const std::array factors{basis.factors(values)};
@@ -95,7 +118,7 @@ TEST(SiteBasis, FactorsAndSplinesAreEachOthersInverse) {
 TEST(SiteBasis, NormsGiveTheMeanSquareOfASpline) {
     std::mt19937 random(4);
     std::uniform_real_distribution<double> unit(-1, 1);
-    const SiteBasis basis(randomSites(18, random), {});
+    const SiteBasis basis(kLattice, randomSites(18, random), {});
     for (const int n : {3, 7, 18}) {
         std::array<std::vector<double>, 1> errors;
         for (int k = 0; k < n; ++k) errors[0].push_back(unit(random));
