@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/edit/select.h"
+#include "ui/conversions.h"
 
 namespace tessera {
 
@@ -225,17 +226,15 @@ QRectF CanvasWidget::visiblePart() const {
 void CanvasWidget::changeViewAsAsked(const ViewRequest& request) {
     if (const auto* pan = std::get_if<PanBy>(&request)) {
         ViewTransform view = mView;
-        view.panBy(QPointF(pan->offset.x, pan->offset.y) * mView.scale());
+        view.panBy(toPoint(pan->offset) * mView.scale());
         view.keepInView(pictureSize(), deviceSize());
         changeView(view);
     } else if (const auto* step = std::get_if<ZoomStep>(&request)) {
         ViewTransform view = mView;
-        view.setScaleAt(mView.toScreen(QPointF(step->at.x, step->at.y)),
-                        ViewTransform::nextScale(mView.scale(), step->in));
+        view.setScaleAt(mView.toScreen(toPoint(step->at)), ViewTransform::nextScale(mView.scale(), step->in));
         zoomView(view);
     } else {
-        const Rect& rect = std::get<ShowRect>(request).rect;
-        showRect(QRectF(QPointF(rect.min.x, rect.min.y), QPointF(rect.max.x, rect.max.y)).normalized());
+        showRect(toRect(std::get<ShowRect>(request).rect));
     }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/conversions.h"
+
 namespace tessera {
 
 namespace {
@@ -47,10 +49,6 @@ size_t blurClass(float blurPx) {
     for (size_t i = 1; i < kBlurClasses.size(); ++i)
         if (blurPx >= kBlurClasses[i].fromPx) found = i;
     return found;
-}
-
-QPointF toPoint(glm::dvec2 p) {
-    return {p.x, p.y};
 }
 
 double length(QPointF p) {
@@ -136,19 +134,11 @@ OverlayPainter::Curve OverlayPainter::curveOf(const PatchMesh& mesh, EdgeId edge
 }
 
 OverlayPainter::OverlayPainter(const PatchMesh& mesh) : mCurves(mesh.connectivity().edgeCapacity()) {
-    mesh.forEachEdge([&](EdgeId e) {
-        mCurves[e.index] = curveOf(mesh, e);
-        mFeatureCount += mCurves[e.index].feature ? 1 : 0;
-    });
+    mesh.forEachEdge([&](EdgeId e) { mCurves[e.index] = curveOf(mesh, e); });
 }
 
 void OverlayPainter::update(const PatchMesh& mesh, std::span<const EdgeId> edges) {
-    for (const EdgeId e : edges) {
-        Curve& curve = mCurves[e.index];
-        mFeatureCount -= curve.feature ? 1 : 0;
-        curve = curveOf(mesh, e);
-        mFeatureCount += curve.feature ? 1 : 0;
-    }
+    for (const EdgeId e : edges) mCurves[e.index] = curveOf(mesh, e);
 }
 
 std::vector<OverlayPainter::Shown> OverlayPainter::shown(const ViewTransform& view,

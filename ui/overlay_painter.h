@@ -50,8 +50,6 @@ class OverlayPainter {
     void paintOutline(QPainter& painter, const ViewTransform& view, const QRectF& visible, double pixelRatio,
                       std::span<const EdgeId> edges, const LineStyle& style) const;
 
-    size_t featureCount() const { return mFeatureCount; }
-
   private:
     // One edge's cubic, in image pixels.
     struct Curve {
@@ -84,7 +82,6 @@ class OverlayPainter {
                             double pixelRatio);
 
     std::vector<Curve> mCurves;  // by edge id
-    size_t mFeatureCount = 0;
 };
 
 }  // namespace tessera

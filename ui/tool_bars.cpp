@@ -12,6 +12,7 @@
 
 #include "ui/action_table.h"
 #include "ui/panels/colour_field.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 
@@ -127,12 +128,10 @@ ToolOptionsBar::Page ToolOptionsBar::addPage(ToolId tool, const QString& name, c
     auto* row = new QHBoxLayout(widget);
     row->setContentsMargins(8, 2, 8, 2);
     row->setSpacing(8);
-    auto* title = new QLabel(name);
-    title->setProperty("role", "heading");
-    row->addWidget(title);
+    row->addWidget(headingLabel(name));
     row->addStretch(1);
-    auto* text = new QLabel(hint);
-    text->setProperty("role", "dim");
+    auto* text = dimLabel(hint);
+    text->setWordWrap(false);
     text->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     row->addWidget(text, 100);
     return {widget, row};

@@ -19,6 +19,7 @@
 #include "core/vectorize/quality.h"
 #include "ui/action_table.h"
 #include "ui/status_bar.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 
@@ -30,32 +31,6 @@ constexpr int kPanelWidthPx = 280;
 constexpr int kFieldHeightPx = 28;
 // Among the presets, what stands for the paper's method.
 const QString kPaper = "paper";
-
-QLabel* heading(const QString& text) {
-    auto* label = new QLabel(text);
-    label->setProperty("role", "heading");
-    return label;
-}
-
-QLabel* dimLabel(const QString& text) {
-    auto* label = new QLabel(text);
-    label->setProperty("role", "dim");
-    label->setWordWrap(true);
-    return label;
-}
-
-QFrame* line() {
-    auto* frame = new QFrame;
-    frame->setProperty("role", "line");
-    return frame;
-}
-
-QVBoxLayout* makeColumn(QWidget* part) {
-    auto* column = new QVBoxLayout(part);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(8);
-    return column;
-}
 
 QHBoxLayout* labelled(const QString& text, QWidget* field) {
     auto* label = new QLabel(text);
@@ -93,7 +68,7 @@ VectorizePanel::VectorizePanel(Settings& settings, const ActionTable& actions, Q
     column->setContentsMargins(16, 12, 16, 16);
     column->setSpacing(16);
     column->addWidget(makeVectorizePart(actions));
-    column->addWidget(line());
+    column->addWidget(separatorLine());
     column->addWidget(makeShowPart(actions));
     column->addWidget(mResult = makeResultPart());
     column->addStretch(1);
@@ -103,7 +78,7 @@ VectorizePanel::VectorizePanel(Settings& settings, const ActionTable& actions, Q
 
 QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     auto* part = new QWidget;
-    auto* column = makeColumn(part);
+    auto* column = partColumn(part);
     column->addLayout(makePatchesRow());
     column->addWidget(dimLabel(tr("More patches keep more detail; fewer are easier to edit.")));
     column->addLayout(makeQualityRow());
@@ -176,7 +151,7 @@ QWidget* VectorizePanel::makeFeaturesPart() {
     connect(mFeatures, &QSlider::sliderReleased, this, &VectorizePanel::editingDone);
     mFeatures->setToolTip(tr("How many outlines stay sharp when enlarged; to the left, none"));
     auto* part = new QWidget;
-    makeColumn(part)->addLayout(labelled(tr("&Outlines"), mFeatures));
+    partColumn(part)->addLayout(labelled(tr("&Outlines"), mFeatures));
     return part;
 }
 
@@ -198,7 +173,7 @@ QWidget* VectorizePanel::makeEdgeContrastPart() {
         tr("Edges above this share of the strongest become features. Raise it where they hold too many "
            "patches"));
     auto* part = new QWidget;
-    makeColumn(part)->addLayout(labelled(tr("&Edge contrast"), mEdgeContrast));
+    partColumn(part)->addLayout(labelled(tr("&Edge contrast"), mEdgeContrast));
     return part;
 }
 
@@ -235,8 +210,8 @@ void VectorizePanel::showFieldsOfMethod() {
 
 QWidget* VectorizePanel::makeShowPart(const ActionTable& actions) {
     auto* part = new QWidget;
-    auto* column = makeColumn(part);
-    column->addWidget(heading(tr("Show")));
+    auto* column = partColumn(part);
+    column->addWidget(headingLabel(tr("Show")));
     for (const ActionId id :
          {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowOriginal})
         column->addWidget(boxFor(actions[id]));
@@ -246,10 +221,10 @@ QWidget* VectorizePanel::makeShowPart(const ActionTable& actions) {
 
 QWidget* VectorizePanel::makeResultPart() {
     auto* part = new QWidget;
-    auto* column = makeColumn(part);
-    column->addWidget(line());
+    auto* column = partColumn(part);
+    column->addWidget(separatorLine());
     column->addSpacing(8);
-    column->addWidget(heading(tr("Result")));
+    column->addWidget(headingLabel(tr("Result")));
     mFigures = new QFormLayout;
     mFigures->setHorizontalSpacing(16);
     mFigures->setVerticalSpacing(6);
