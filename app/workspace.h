@@ -68,10 +68,10 @@ class Workspace : public QObject {
     // step.
     void vectorize(const VectorizeSettings& settings);
     bool canVectorize() const;
-    // Saves a snapshot of a document with patches, after a save that is still running; `then` runs after it
-    // has been written, and not where that failed.
-    void save(const QString& path, bool embedPhoto, std::function<void()> then = {});
-    void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void()> then);
+    // Saves a snapshot of a document with patches, after a save that is still running; `then` hears whether
+    // it has been written, after the message about it where it has not.
+    void save(const QString& path, bool embedPhoto, std::function<void(bool)> then = {});
+    void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void(bool)> then);
     void exportPicture(const ExportRequest& request);
 
     // Of all documents, those to come included.
@@ -87,6 +87,7 @@ class Workspace : public QObject {
   signals:
     // Another document is the current one, or none. The one before is still there.
     void sessionChanged();
+    // It is the current one already.
     void sessionAdded(tessera::DocumentSession* session);
     // For the last time; it goes when control is back in the event loop.
     void sessionClosed(tessera::DocumentSession* session);
@@ -111,7 +112,7 @@ class Workspace : public QObject {
                          Vectorized vectorized);
     void applyRelinked(DocumentSession& session, OpenedFile opened, const QString& path);
     void startSave(DocumentSession& session, const QString& path, bool embedPhoto,
-                   std::function<void()> then);
+                   std::function<void(bool)> then);
     Job* find(JobKind kind, const DocumentSession* session) const;
     void track(Job* job, const DocumentSession* session);
     void stopAll(JobKind kind, const DocumentSession* session);

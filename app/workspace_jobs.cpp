@@ -64,12 +64,12 @@ void Workspace::applyVectorized(DocumentSession& session, uint64_t revision,
     if (!remarks.isEmpty()) emit said({.kind = Message::Kind::Info, .text = remarks});
 }
 
-void Workspace::save(const QString& path, bool embedPhoto, std::function<void()> then) {
+void Workspace::save(const QString& path, bool embedPhoto, std::function<void(bool)> then) {
     if (mCurrent) save(mCurrent, path, embedPhoto, std::move(then));
 }
 
 void Workspace::save(DocumentSession* session, const QString& path, bool embedPhoto,
-                     std::function<void()> then) {
+                     std::function<void(bool)> then) {
     if (!session->hasMesh()) return;
     session->whenIdle([this, session, path, embedPhoto, then = std::move(then)] {
         Job* const job = find(JobKind::Save, session);
@@ -79,13 +79,13 @@ void Workspace::save(DocumentSession* session, const QString& path, bool embedPh
         connect(job, &Job::finished, this, [this, target, path, embedPhoto, then] {
             if (!target) return;
             if (target->modified() || target->path() != path) return save(target, path, embedPhoto, then);
-            if (then) then();
+            if (then) then(true);
         });
     });
 }
 
 void Workspace::startSave(DocumentSession& session, const QString& path, bool embedPhoto,
-                          std::function<void()> then) {
+                          std::function<void(bool)> then) {
     Document snapshot = session.document();
     if (!embedPhoto)
         snapshot.embeddedSource.reset();
@@ -95,13 +95,17 @@ void Workspace::startSave(DocumentSession& session, const QString& path, bool em
     const uint64_t revision = session.revision();
     Job* job = startSaveJob(this, std::move(snapshot), path,
                             [this, target, revision, path, then = std::move(then)](Result<Saved> written) {
-                                if (!written) return report(written.error());
+                                if (!written) {
+                                    report(written.error());
+                                    if (then) then(false);
+                                    return;
+                                }
                                 emit fileUsed(path);
                                 if (target) {
                                     target->markSaved(revision, path, written->colourStep);
                                     emit saved(target);
                                 }
-                                if (then) then();
+                                if (then) then(true);
                             });
     track(job, &session);
 }

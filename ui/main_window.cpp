@@ -7,9 +7,11 @@
 #include <QMenu>
 #include <QMessageBox>
 #include <QTabBar>
+#include <utility>
 
 #include "ui/action_table.h"
 #include "ui/canvas_widget.h"
+#include "ui/conversions.h"
 #include "ui/dialogs/cheat_sheet.h"
 #include "ui/dialogs/preferences_dialog.h"
 #include "ui/dialogs/recovery_dialog.h"
@@ -57,7 +59,7 @@ MainWindow::MainWindow()
     connectPanels();
     chooseRenderer();
     restoreWindow();
-    applySettings();
+    applyBehaviour();
     showSession();
     mCanvas->setFocus();
 }
@@ -133,16 +135,8 @@ void MainWindow::connectWorkspace() {
     connect(&mWorkspace, &Workspace::sessionChanged, this, &MainWindow::adoptSession);
     for (const auto signal : {&Workspace::sessionAdded, &Workspace::sessionClosed, &Workspace::saved})
         connect(&mWorkspace, signal, this, &MainWindow::showTabs, Qt::QueuedConnection);
-    connect(&mWorkspace, &Workspace::sessionAdded, this, [this](DocumentSession* session) {
-        connect(session, &DocumentSession::changed, this, [this, session](const Change& change) {
-            if (change.preview) return;
-            showTabs();
-            if (session == mWorkspace.session()) showSession();
-        });
-        connect(session, &DocumentSession::editingChanged, this, &MainWindow::updateActions);
-        connect(&session->history(), &History::changed, this, &MainWindow::updateActions);
-        connect(&session->selection(), &Selection::changed, this, &MainWindow::updateSelectionActions);
-    });
+    connect(&mWorkspace, &Workspace::sessionAdded, this,
+            [this](DocumentSession* session) { welcome(*session); });
     connect(&mWorkspace, &Workspace::said, mMessages, &MessageBar::show);
     connect(&mWorkspace, &Workspace::fileUsed, this, [this](const QString& path) {
         mSettings.addRecentFile(path);
@@ -151,6 +145,8 @@ void MainWindow::connectWorkspace() {
     });
     connect(&mWorkspace, &Workspace::jobChanged, this, [this] {
         mStatus->showJob(mWorkspace.currentJob());
+        // The file that it was wished for could not be opened.
+        if (!mWorkspace.running(JobKind::Open)) mVectorizeWhenOpen = false;
         updateActions();
     });
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
@@ -236,11 +232,19 @@ void MainWindow::adoptSession() {
     showTabs();
     showSession();
     mCanvas->setFocus();
-    if (!session) return;
-    const bool vectorize = !session->hasMesh() && session->revision() == 1 &&
-                           (mVectorizeWhenOpen || mSettings.vectorizeOnOpen());
-    mVectorizeWhenOpen = false;
-    if (vectorize) startVectorize();
+}
+
+void MainWindow::welcome(DocumentSession& session) {
+    connect(&session, &DocumentSession::changed, this, [this, &session](const Change& change) {
+        if (change.preview) return;
+        showTabs();
+        if (&session == mWorkspace.session()) showSession();
+    });
+    connect(&session, &DocumentSession::editingChanged, this, &MainWindow::updateActions);
+    connect(&session.history(), &History::changed, this, &MainWindow::updateActions);
+    connect(&session.selection(), &Selection::changed, this, &MainWindow::updateSelectionActions);
+    const bool wanted = std::exchange(mVectorizeWhenOpen, false) || mSettings.vectorizeOnOpen();
+    if (wanted && !session.hasMesh()) startVectorize();
 }
 
 void MainWindow::showSession() {
@@ -354,9 +358,7 @@ void MainWindow::fitSelection() {
     const DocumentSession& session = *mWorkspace.session();
     const PatchMesh& mesh = session.document().mesh;
     QRectF area;
-    const auto include = [&](const Rect& box) {
-        area |= QRectF(QPointF(box.min.x, box.min.y), QPointF(box.max.x, box.max.y));
-    };
+    const auto include = [&](const Rect& box) { area |= toRect(box); };
     for (const PatchId p : session.selection().patches()) include(controlBounds(mesh, p));
     for (const EdgeId e : session.selection().curves())
         for (const HalfedgeId h : {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))})
@@ -391,8 +393,12 @@ void MainWindow::say(const QString& text) {
 
 void MainWindow::applySettings() {
     applyTheme(*qApp, mSettings.theme());
-    mCanvas->setTheme(mSettings.theme());
     mActions->applyKeys(mSettings);
+    applyBehaviour();
+}
+
+void MainWindow::applyBehaviour() {
+    mCanvas->setTheme(mSettings.theme());
     mAutosave.setInterval(mSettings.autosaveSeconds());
     mWorkspace.setHistoryLimit(mSettings.historyBytes());
     Job::setThreadLimit(mSettings.threads());

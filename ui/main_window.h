@@ -44,7 +44,7 @@ class MainWindow : public QMainWindow {
     // Vectorizes with the panel's settings, now or as soon as the file that is being opened is there.
     void vectorizeWhenOpen();
     // Saves to `path`, a .tessera file, without asking.
-    void saveTo(const QString& path, std::function<void()> then = {});
+    void saveTo(const QString& path);
     // Offers the documents that a run before this one could not save, if there are any.
     void offerRecovery();
 
@@ -81,6 +81,7 @@ class MainWindow : public QMainWindow {
     void connectPanels();
     void chooseRenderer();
     void adoptSession();
+    void welcome(DocumentSession& session);
     void showSession();
     void showTabs();
     void updateActions();
@@ -94,7 +95,9 @@ class MainWindow : public QMainWindow {
     void changeBrush(double factor);
     void showContextMenu(QPoint at);
     void say(const QString& text);
+    // What the preferences have written; applyBehaviour() is the part of it that start-up needs.
     void applySettings();
+    void applyBehaviour();
     void showPreferences();
     void showCheatSheet();
     void showAbout();
@@ -103,8 +106,8 @@ class MainWindow : public QMainWindow {
     void chooseAndOpen();
     void paste();
     void copy();
-    void save(std::function<void()> then = {});
-    void chooseAndSave(std::function<void()> then = {});
+    void save();
+    void chooseAndSave();
     // A .tessera path; empty where the user chooses none.
     QString askForPath(const DocumentSession& session);
     void chooseAndExport();

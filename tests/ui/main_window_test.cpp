@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <QComboBox>
+#include <QDir>
 #include <QDoubleSpinBox>
 #include <QFile>
 #include <QSlider>
@@ -10,6 +11,7 @@
 #include "core/vectorize/quality.h"
 #include "tests/ui/main_window_fixture.h"
 #include "ui/status_bar.h"
+#include "ui/theme.h"
 
 namespace tessera {
 namespace {
@@ -271,6 +273,60 @@ TEST_F(MainWindowTest, AsksBeforeChangesAreLost) {
     answer(QMessageBox::Discard);
     window->close();
     EXPECT_TRUE(QTest::qWaitFor([&] { return !window->isVisible(); }, kWaitMs));
+}
+
+TEST_F(MainWindowTest, StaysOpenWhereASaveAtTheEndFails) {
+    openPhoto();
+    vectorize();
+    const QString path = folder.filePath("gone/disk.tessera");
+    ASSERT_TRUE(QDir(folder.path()).mkdir("gone"));
+    window->saveTo(path);
+    ASSERT_TRUE(idle());
+    vectorize();
+    ASSERT_TRUE(QDir(folder.filePath("gone")).removeRecursively());
+    answer(QMessageBox::Save);
+    EXPECT_FALSE(window->close());
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(window->isVisible());
+    EXPECT_TRUE(window->messages().showsError());
+    EXPECT_TRUE(session()->modified());
+    answer(QMessageBox::Discard);
+    window->close();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return !window->isVisible(); }, kWaitMs));
+}
+
+TEST_F(MainWindowTest, VectorizesPhotosAsTheyAreOpenedAndNotAsTheyAreLookedAt) {
+    openPhoto();
+    const QString second = folder.filePath("second.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    window->open(second);
+    ASSERT_TRUE(idle());
+    Settings().setVectorizeOnOpen(true);
+    workspace().setCurrent(workspace().sessions().first());
+    EXPECT_FALSE(workspace().running(JobKind::Vectorize));
+    const QString third = folder.filePath("third.png");
+    ASSERT_TRUE(disk(80, 60).save(third));
+    window->open(third);
+    ASSERT_TRUE(idle());
+    Settings().setVectorizeOnOpen(false);
+    ASSERT_EQ(workspace().sessions().size(), 3);
+    EXPECT_TRUE(session()->hasMesh());
+    EXPECT_FALSE(workspace().sessions().first()->hasMesh());
+}
+
+TEST_F(MainWindowTest, MakingAWindowSetsNoThemeAgain) {
+    struct Counter : QObject {
+        bool eventFilter(QObject* object, QEvent* event) override {
+            changes += object == qApp && event->type() == QEvent::ApplicationPaletteChange ? 1 : 0;
+            return false;
+        }
+        int changes = 0;
+    } counter;
+    qApp->installEventFilter(&counter);
+    const MainWindow another;
+    EXPECT_EQ(counter.changes, 0);
+    applyTheme(*qApp, Settings().theme());
+    EXPECT_GT(counter.changes, 0) << "the counter sees nothing";
 }
 
 TEST_F(MainWindowTest, ExportsAtTheChosenScale) {
