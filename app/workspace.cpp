@@ -166,6 +166,7 @@ void Workspace::closeAll(const AskToClose& ask, std::function<void(bool)> then) 
 void Workspace::remove(DocumentSession* session) {
     stopAll(JobKind::Vectorize, session);
     stopAll(JobKind::Relink, session);
+    stopAll(JobKind::Drafts, session);
     const qsizetype at = mSessions.indexOf(session);
     mSessions.removeAt(at);
     // The neighbour on the right takes its place, or else the one on the left.

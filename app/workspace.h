@@ -14,6 +14,7 @@
 #include "app/jobs/job.h"
 #include "app/jobs/vectorize_job.h"
 #include "app/message.h"
+#include "core/vectorize/draft_ladder.h"
 #include "core/vectorize/settings.h"
 
 namespace tessera {
@@ -65,9 +66,13 @@ class Workspace : public QObject {
     void closeAll(const AskToClose& ask, std::function<void(bool)> then);
 
     // Needs a photo; does nothing while a vectorization of it is running. The result becomes one undoable
-    // step.
-    void vectorize(const VectorizeSettings& settings);
+    // step. With `meanError` (levels of 255) the patches are those that it takes, and not the settings'.
+    void vectorize(const VectorizeSettings& settings, std::optional<double> meanError = {});
     bool canVectorize() const;
+    // Builds the drafts of the current photo around the settings' number of patches; `then` hears of it
+    // unless the document is closed first, and gets null where that failed or was stopped.
+    void buildDrafts(const VectorizeSettings& settings,
+                     std::function<void(std::shared_ptr<const DraftLadder>)> then);
     // Saves a snapshot of a document with patches, after a save that is still running; `then` hears whether
     // it has been written, after the message about it where it has not.
     void save(const QString& path, bool embedPhoto, std::function<void(bool)> then = {});
@@ -108,8 +113,7 @@ class Workspace : public QObject {
 
     DocumentSession* adopt(OpenedFile opened);
     void remove(DocumentSession* session);
-    void applyVectorized(DocumentSession& session, uint64_t revision, const VectorizeSettings& settings,
-                         Vectorized vectorized);
+    void applyVectorized(DocumentSession& session, uint64_t revision, Vectorized vectorized);
     void applyRelinked(DocumentSession& session, OpenedFile opened, const QString& path);
     void startSave(DocumentSession& session, const QString& path, bool embedPhoto,
                    std::function<void(bool)> then);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/jobs/draft_job.h"
 #include "app/jobs/save_job.h"
 #include "app/workspace.h"
 
@@ -13,24 +14,36 @@ bool Workspace::canVectorize() const {
     return mCurrent && mCurrent->photo().image && !running(JobKind::Vectorize);
 }
 
-void Workspace::vectorize(const VectorizeSettings& settings) {
+void Workspace::vectorize(const VectorizeSettings& settings, std::optional<double> meanError) {
     if (!canVectorize()) return;
     const QPointer<DocumentSession> session = mCurrent;
     const uint64_t revision = mCurrent->revision();
-    Job* job = startVectorizeJob(
+    Job* job =
+        startVectorizeJob(this, mCurrent->displayName(), mCurrent->photo().image, settings, meanError,
+                          [this, session, revision](Result<Vectorized> vectorized) {
+                              if (!session) return;
+                              if (!vectorized) return report(vectorized.error());
+                              session->whenIdle([this, session, revision, result = std::move(*vectorized)] {
+                                  applyVectorized(*session, revision, result);
+                              });
+                          });
+    track(job, mCurrent);
+}
+
+void Workspace::buildDrafts(const VectorizeSettings& settings,
+                            std::function<void(std::shared_ptr<const DraftLadder>)> then) {
+    const QPointer<DocumentSession> session = mCurrent;
+    Job* job = startLadderJob(
         this, mCurrent->displayName(), mCurrent->photo().image, settings,
-        [this, session, revision, settings](Result<Vectorized> vectorized) {
+        [this, session, then = std::move(then)](Result<std::shared_ptr<const DraftLadder>> ladder) {
             if (!session) return;
-            if (!vectorized) return report(vectorized.error());
-            session->whenIdle([this, session, revision, settings, result = std::move(*vectorized)] {
-                applyVectorized(*session, revision, settings, result);
-            });
+            if (!ladder) report(ladder.error());
+            then(ladder ? std::move(*ladder) : nullptr);
         });
     track(job, mCurrent);
 }
 
-void Workspace::applyVectorized(DocumentSession& session, uint64_t revision,
-                                const VectorizeSettings& settings, Vectorized vectorized) {
+void Workspace::applyVectorized(DocumentSession& session, uint64_t revision, Vectorized vectorized) {
     Document after = session.document();
     const bool dropped = !after.selections.empty();
     after.mesh = std::move(vectorized.result.mesh);
@@ -38,7 +51,7 @@ void Workspace::applyVectorized(DocumentSession& session, uint64_t revision,
     after.fitted.reset();
     after.selections.clear();
     after.colourStep.reset();
-    after.settings = settings;
+    after.settings = std::move(vectorized.settings);
     after.report = std::move(vectorized.result.report);
     after.difference = vectorized.difference;
     QString remarks = asSentence(after.report.shortfall);

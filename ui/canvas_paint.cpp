@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ui/canvas_widget.h"
+#include "ui/centres_painter.h"
 #include "ui/tool_overlay_painter.h"
 
 namespace tessera {
@@ -50,7 +51,7 @@ void CanvasWidget::paintEvent(QPaintEvent*) {
     if (!mSession) return;
     painter.setClipRect(mView.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect());
     paintPicture(painter);
-    if (!mHeatMap.isNull())
+    if (!mHeatMap.isNull() && !mDrafting)
         drawClipped(painter, mHeatMap, mView.toScreen(QRectF(QPointF(0, 0), pictureSize())), deviceRect());
     if (mView.scale() >= kGridFromScale * ratio) paintPixelGrid(painter);
     painter.setClipping(false);
@@ -111,12 +112,14 @@ void CanvasWidget::paintPixelGrid(QPainter& painter) const {
 }
 
 void CanvasWidget::paintOverlays(QPainter& painter) const {
-    if (!mSession->hasMesh()) return;
+    if (mMesh.patchCount() == 0) return;
     const double ratio = devicePixelRatioF();
     mOverlay.paint(painter, mView, deviceRect(), ratio, mOverlays);
+    if (mOverlays.centres) paintCentres(painter, mMesh, mView, deviceRect(), ratio);
     mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mHighlightOutline, kHighlight);
     mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mSelectionOutline, kSelection);
-    if (mTools) paintToolOverlay(painter, mTools->overlay(), mOverlay, mMesh, mView, deviceRect(), ratio);
+    if (toolsInUse())
+        paintToolOverlay(painter, mTools->overlay(), mOverlay, mMesh, mView, deviceRect(), ratio);
 }
 
 void CanvasWidget::paintGround(QPainter& painter) {

@@ -82,44 +82,79 @@ void CanvasWidget::setSession(DocumentSession* session) {
 }
 
 void CanvasWidget::reloadMesh() {
+    mDrafting = false;
     mMesh = mSession ? mSession->document().mesh : PatchMesh();
     mFrames.setMesh(mMesh);
-    mOverlay = OverlayPainter(mMesh);
-    mHighlightOutline.clear();
     mHeatMap = {};
-    outlineSelection();
+    remakeOverlay();
     requestFrame();
     update();
+    reportCursor();
+}
+
+void CanvasWidget::setDraft(const std::optional<PatchMesh>& draft) {
+    if (!mSession || (!draft && !mDrafting)) return;
+    if (mTools) mTools->cancel();
+    mDrafting = draft.has_value();
+    showMesh(draft ? *draft : mSession->document().mesh);
+    updateCursor();
+}
+
+void CanvasWidget::showMesh(const PatchMesh& mesh) {
+    // What is on the screen stays until the next frame is there.
+    Touched everything;
+    everything.topology = true;
+    if (mMesh.patchCount() > 0 && mesh.patchCount() > 0)
+        mFrames.updateMesh(mesh, everything);
+    else
+        mFrames.setMesh(mesh);
+    mMesh = mesh;
+    remakeOverlay();
+    requestFrame();
     reportCursor();
 }
 
 void CanvasWidget::follow(const Change& change) {
     if (change.photo) update();
     if (!change.mesh()) return;
-    if (change.replaced) return reloadMesh();
+    if (change.replaced || mDrafting) return reloadMesh();
     const PatchMesh& mesh = mSession->document().mesh;
     mFrames.updateMesh(mesh, change.touched);
     mMesh = mesh;
     if (change.touched.topology) {
-        mOverlay = OverlayPainter(mMesh);
-        mHighlightOutline.clear();
-        outlineSelection();
+        remakeOverlay();
     } else {
         std::vector<EdgeId> edges = change.touched.edges;
         for (const VertexId v : change.touched.vertices) appendEdgesAround(mMesh.connectivity(), v, edges);
+        if (mOverlay.measuresJumps())
+            for (const PatchId p : change.touched.patches)
+                for (const HalfedgeId h : mMesh.connectivity().sides(p))
+                    edges.push_back(HalfedgeMesh::edge(h));
         mOverlay.update(mMesh, edges);
     }
     update();
 }
 
+void CanvasWidget::remakeOverlay() {
+    mOverlay = OverlayPainter(mMesh);
+    mHighlightOutline.clear();
+    outlineSelection();
+    measureFeatures();
+}
+
+void CanvasWidget::measureFeatures() {
+    if (mOverlays.tint == FeatureTint::Importance && !mOverlay.measuresJumps()) mOverlay.measureJumps(mMesh);
+}
+
 void CanvasWidget::outlineSelection() {
-    mSelectionOutline = mSession && mSession->hasMesh() ? outlineEdges(mMesh, mSession->selection().patches())
-                                                        : std::vector<EdgeId>();
+    mSelectionOutline = mSession && mSession->hasMesh() && !mDrafting
+                            ? outlineEdges(mMesh, mSession->selection().patches())
+                            : std::vector<EdgeId>();
     update();
 }
 
 void CanvasWidget::setHighlight(const PatchSet& patches) {
-    mHighlightOutline = outlineEdges(mMesh, patches);
+    mHighlightOutline = mDrafting ? std::vector<EdgeId>() : outlineEdges(mMesh, patches);
     update();
 }
 
@@ -155,7 +190,7 @@ QSizeF CanvasWidget::pictureSize() const {
 
 bool CanvasWidget::showsPhoto() const {
     if (!hasOriginal()) return false;
-    return !mSession->hasMesh() || mShowOriginal || mPeeking;
+    return mMesh.patchCount() == 0 || mShowOriginal || mPeeking;
 }
 
 void CanvasWidget::setShowOriginal(bool on) {
@@ -176,6 +211,7 @@ void CanvasWidget::setXRay(bool on) {
 
 void CanvasWidget::setOverlays(const OverlayOptions& options) {
     mOverlays = options;
+    measureFeatures();
     update();
 }
 
@@ -261,7 +297,7 @@ void CanvasWidget::changeView(const ViewTransform& view) {
 }
 
 void CanvasWidget::requestFrame() {
-    if (!mSession || !mSession->hasMesh()) return;
+    if (!mSession || mMesh.patchCount() == 0) return;
     // Only pixels that lie wholly within the picture: what is outside is black or clear, and would darken the
     // border.
     const QRectF part = mView.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect();
@@ -293,7 +329,7 @@ void CanvasWidget::updateCursor() {
     else if (mDraggingSplit || (mCursor && overSplitLine(*mCursor)))
         setCursor(Qt::SplitHCursor);
     else
-        setCursor(cursorOf(mTools && mSession ? mTools->cursor() : ToolCursor::Arrow));
+        setCursor(cursorOf(toolsInUse() ? mTools->cursor() : ToolCursor::Arrow));
 }
 
 void CanvasWidget::reportCursor() {

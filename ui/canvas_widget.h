@@ -58,6 +58,9 @@ class CanvasWidget : public QWidget {
     void setXRay(bool on);
     // A picture of the size of the document's, painted over it; null for none.
     void setHeatMap(const QImage& map);
+    // Shows another mesh of the same picture in place of the document's, which tools leave alone meanwhile;
+    // none goes back to the document, and so does a change of it.
+    void setDraft(const std::optional<PatchMesh>& draft);
     // Patches that a panel points at.
     void setHighlight(const PatchSet& patches);
     // What is drawn of the whole picture, small; null before there is anything.
@@ -77,6 +80,9 @@ class CanvasWidget : public QWidget {
     // OpenGL has failed; the CPU renderer goes on.
     void drawerLost(const QString& reason);
     void contextMenuWanted(QPoint globalPosition);
+    // Escape, or a press where a tool would work, while a draft is shown.
+    void draftLeft();
+    void draftPressed();
 
   protected:
     void paintEvent(QPaintEvent* event) override;
@@ -99,7 +105,12 @@ class CanvasWidget : public QWidget {
     QSizeF pictureSize() const;
 
     void reloadMesh();
+    void showMesh(const PatchMesh& mesh);
+    // The tools, while there is something that they may work on.
+    ToolManager* toolsInUse() const { return mSession && !mDrafting ? mTools : nullptr; }
     void follow(const Change& change);
+    void remakeOverlay();
+    void measureFeatures();
     void outlineSelection();
     ToolEvent toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const;
     ToolKey toolKey(const QKeyEvent& event) const;
@@ -143,6 +154,7 @@ class CanvasWidget : public QWidget {
     QElapsedTimer mSinceZoom;   // steps of a wheel in quick succession are one change of the zoom
     QSizeF mLaidOut;            // device size for which mView was made
     bool mFitted = true;        // the view follows the window until the user zooms or pans
+    bool mDrafting = false;     // mMesh is a draft
     bool mShowOriginal = false;
     bool mPeeking = false;  // O is held
     bool mSpace = false;    // Space is held

@@ -48,6 +48,7 @@ size_t featureCount(const PatchMesh& mesh) {
 MainWindow::MainWindow()
     : mSwatches(SwatchStore::defaultPath()),
       mActions(std::make_unique<ActionTable>(this, mSettings)),
+      mDrafts(mWorkspace),
       mAutosave(mWorkspace, mRecovery) {
     setAcceptDrops(true);
     setContextMenuPolicy(Qt::NoContextMenu);
@@ -69,6 +70,7 @@ MainWindow::~MainWindow() {
     mWorkspace.disconnect(this);
     mTools.setSession(nullptr);
     mHeatMap.setSession(nullptr);
+    mDrafts.setSession(nullptr);
     mCanvas->setSession(nullptr);
 }
 
@@ -109,9 +111,17 @@ void MainWindow::connectViewActions() {
     on(ActionId::FitSelection, [this] { fitSelection(); });
     on(ActionId::PreviousZoom, [this] { mCanvas->previousZoom(); });
     on(ActionId::OutlineView, [this] { cycleOutlineView(); });
-    for (const ActionId id :
-         {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowBlur})
+    for (const ActionId id : {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints,
+                              ActionId::ShowCentres, ActionId::ShowBlur, ActionId::ShowImportance})
         onToggled(id, [this] { updateOverlays(); });
+    // A feature has one colour at a time.
+    const auto excludes = [&](ActionId id, ActionId other) {
+        onToggled(id, [action = a[other]](bool shown) {
+            if (shown) action->setChecked(false);
+        });
+    };
+    excludes(ActionId::ShowBlur, ActionId::ShowImportance);
+    excludes(ActionId::ShowImportance, ActionId::ShowBlur);
     onToggled(ActionId::ShowHeatMap, [this](bool shown) { mHeatMap.setWanted(shown); });
     onToggled(ActionId::ShowOriginal, [this](bool shown) { mCanvas->setShowOriginal(shown); });
     onToggled(ActionId::Split, [this](bool split) { mCanvas->setSplit(split); });
@@ -190,6 +200,12 @@ void MainWindow::chooseRenderer() {
 
 void MainWindow::connectPanels() {
     connect(mPanel, &VectorizePanel::editingDone, this, [this] { mCanvas->setFocus(); });
+    connect(mPanel, &VectorizePanel::draftWanted, this,
+            [this] { mDrafts.want(mPanel->settings(mWorkspace.session())); });
+    connect(mPanel, &VectorizePanel::draftDropped, &mDrafts, &DraftPreview::drop);
+    connect(mCanvas, &CanvasWidget::draftLeft, &mDrafts, &DraftPreview::drop);
+    connect(mCanvas, &CanvasWidget::draftPressed, this, &MainWindow::explainDraft);
+    connect(&mDrafts, &DraftPreview::changed, this, &MainWindow::showDraft);
     mRecolour->setToolOptions(mTools);
     mPalette->setToolOptions(mTools);
     mSelection->setToolOptions(mTools);
@@ -227,6 +243,7 @@ void MainWindow::adoptSession() {
     mPalette->setSession(session);
     mSelection->setSession(session);
     mHistory->setSession(session);
+    mDrafts.setSession(session);
     mNavigator->setPicture(mCanvas->overviewImage());
     if (session && session->hasMesh()) mPanel->showSettings(session->document().settings);
     showTabs();
@@ -299,8 +316,9 @@ void MainWindow::updateActions() {
     enable({ActionId::Close, ActionId::ZoomIn, ActionId::ZoomOut, ActionId::ZoomFit, ActionId::Zoom100,
             ActionId::PreviousZoom},
            session);
-    enable({ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowBlur,
-            ActionId::OutlineView, ActionId::Copy, ActionId::Relink},
+    enable({ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowCentres,
+            ActionId::ShowBlur, ActionId::ShowImportance, ActionId::OutlineView, ActionId::Copy,
+            ActionId::Relink},
            hasMesh);
     enable({ActionId::ShowOriginal, ActionId::Split, ActionId::XRay, ActionId::ShowHeatMap},
            hasMesh && hasPhoto);
@@ -324,14 +342,17 @@ void MainWindow::updateSelectionActions() {
 
 void MainWindow::updateOverlays() {
     const ActionTable& a = *mActions;
-    const bool byBlur = a[ActionId::ShowBlur]->isChecked();
+    const FeatureTint tint = a[ActionId::ShowBlur]->isChecked()         ? FeatureTint::Blur
+                             : a[ActionId::ShowImportance]->isChecked() ? FeatureTint::Importance
+                                                                        : FeatureTint::Plain;
     // What can be taken hold of is seen.
     const bool shaping = mTools.tool() == ToolId::Direct;
-    mCanvas->setOverlays({.features = byBlur || a[ActionId::ShowFeatures]->isChecked(),
-                          .featuresByBlur = byBlur,
+    mCanvas->setOverlays({.features = tint != FeatureTint::Plain || a[ActionId::ShowFeatures]->isChecked(),
+                          .tint = tint,
                           .edges = shaping || a[ActionId::ShowEdges]->isChecked(),
                           .vertices = shaping,
-                          .controlPoints = a[ActionId::ShowControlPoints]->isChecked()});
+                          .controlPoints = a[ActionId::ShowControlPoints]->isChecked(),
+                          .centres = a[ActionId::ShowCentres]->isChecked()});
 }
 
 void MainWindow::cycleOutlineView() {
@@ -351,7 +372,20 @@ void MainWindow::updateTitle() {
 void MainWindow::startVectorize() {
     mMessages->hide();
     mCanvas->setFocus();
-    mWorkspace.vectorize(mPanel->settings(mWorkspace.session()));
+    mWorkspace.vectorize(mPanel->settings(mWorkspace.session()), mPanel->meanError());
+}
+
+void MainWindow::showDraft() {
+    const auto& draft = mDrafts.mesh();
+    mCanvas->setDraft(draft);
+    if (!draft) mMessages->hide();
+    mPanel->showDraft(draft ? std::optional(draft->patchCount()) : std::nullopt);
+}
+
+void MainWindow::explainDraft() {
+    mMessages->show({.text = tr("This is a draft: apply it to edit it, or press Escape to go back."),
+                     .actionText = tr("Apply"),
+                     .action = [this] { startVectorize(); }});
 }
 
 void MainWindow::fitSelection() {

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "app/autosave.h"
+#include "app/draft_preview.h"
 #include "app/heat_map.h"
 #include "app/settings.h"
 #include "app/swatch_store.h"
@@ -91,6 +92,8 @@ class MainWindow : public QMainWindow {
     void updateTitle();
     void showView();
     void startVectorize();
+    void showDraft();
+    void explainDraft();
     void fitSelection();
     void changeBrush(double factor);
     void showContextMenu(QPoint at);
@@ -146,6 +149,7 @@ class MainWindow : public QMainWindow {
     bool mClosing = false;
     RecoveryStore mRecovery;
     Workspace mWorkspace;  // after all that its jobs report to: it goes before them
+    DraftPreview mDrafts;
     Autosave mAutosave;
 };
 

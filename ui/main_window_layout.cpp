@@ -4,6 +4,7 @@
 #include <QMenuBar>
 #include <QScreen>
 #include <QScrollArea>
+#include <QScrollBar>
 #include <QStackedLayout>
 #include <QTabBar>
 
@@ -27,11 +28,15 @@ namespace tessera {
 namespace {
 
 constexpr QSize kFirstSize(1440, 900);
+// What the panels need at least.
+constexpr int kPanelWidthPx = 290;
 // Of what saveState() keeps: another number where docks have come or gone.
 constexpr int kStateVersion = 2;
 
-const std::array kRememberedToggles{ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints,
-                                    ActionId::ShowBlur, ActionId::Rulers};
+const std::array kRememberedToggles{
+    ActionId::ShowFeatures, ActionId::ShowEdges,      ActionId::ShowControlPoints,
+    ActionId::ShowBlur,     ActionId::ShowImportance, ActionId::ShowCentres,
+    ActionId::Rulers};
 
 }  // namespace
 
@@ -97,12 +102,14 @@ QDockWidget* MainWindow::addDock(const QString& name, const QString& title, QWid
     dock->setFeatures(QDockWidget::DockWidgetMovable);
     // The tab says the name.
     dock->setTitleBarWidget(new QWidget);
+    content->setMinimumWidth(kPanelWidthPx);
     if (scrolls) {
         auto* area = new QScrollArea;
         area->setWidgetResizable(true);
         area->setFrameShape(QFrame::NoFrame);
         area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         area->setWidget(content);
+        area->setMinimumWidth(kPanelWidthPx + area->verticalScrollBar()->sizeHint().width());
         dock->setWidget(area);
     } else {
         dock->setWidget(content);

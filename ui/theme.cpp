@@ -14,9 +14,9 @@ struct Greys {
 };
 
 const Greys kDark{"#2d2d2d", "#232323", "#3a3a3a", "#353535", "#1d1d1d",
-                  "#dedede", "#8f8f8f", "#3d8bd9", "#ffffff"};
+                  "#dedede", "#9d9d9d", "#3d8bd9", "#ffffff"};
 const Greys kLight{"#ececec", "#ffffff", "#f7f7f7", "#f4f4f4", "#c4c4c4",
-                   "#1f1f1f", "#7a7a7a", "#1f6fc0", "#ffffff"};
+                   "#1f1f1f", "#686868", "#1f6fc0", "#ffffff"};
 
 QPalette paletteOf(const Greys& g) {
     QPalette palette;
@@ -45,7 +45,7 @@ QPalette paletteOf(const Greys& g) {
     return palette;
 }
 
-// %1 line, %2 text, %3 dim, %4 accent, %5 accent text, %6 raised, %7 button, %8 window
+// %1 line, %2 text, %3 dim, %4 accent, %5 accent text, %6 raised, %7 button, %8 window, %9 handle
 const char* const kSheet = R"(
     QMainWindow::separator { background: %1; width: 1px; height: 1px; }
     QMenuBar { border-bottom: 1px solid %1; padding: 2px 4px; }
@@ -60,6 +60,16 @@ const char* const kSheet = R"(
     QToolTip { color: %2; background: %6; border: 1px solid %1; padding: 4px 6px; }
     QLabel[role="heading"] { color: %3; font-weight: bold; }
     QLabel[role="dim"] { color: %3; }
+    QMenu { etch-disabled-text: 0; }
+    QDialogButtonBox { dialogbuttonbox-buttons-have-icons: 0; }
+    QScrollBar:vertical { background: %8; width: 10px; margin: 0; }
+    QScrollBar:horizontal { background: %8; height: 10px; margin: 0; }
+    QScrollBar::handle { background: %9; border-radius: 3px; margin: 2px; }
+    QScrollBar::handle:vertical { min-height: 28px; }
+    QScrollBar::handle:horizontal { min-width: 28px; }
+    QScrollBar::handle:hover { background: %3; }
+    QScrollBar::add-line, QScrollBar::sub-line { width: 0; height: 0; }
+    QScrollBar::add-page, QScrollBar::sub-page { background: none; }
     QPushButton { padding: 6px 14px; border: 1px solid %1; border-radius: 4px; background: %7; }
     QPushButton:hover { border-color: %4; }
     QPushButton:focus { border-color: %4; }
@@ -99,7 +109,8 @@ void applyTheme(QApplication& application, Theme theme) {
     checkBoxes.setColor(QPalette::Base, light ? g.base : g.button.lighter(130));
     QApplication::setPalette(checkBoxes, "QCheckBox");
     QString sheet = kSheet;
-    for (const QColor& colour : {g.line, g.text, g.dim, g.accent, g.accentText, g.raised, g.button, g.window})
+    for (const QColor& colour : {g.line, g.text, g.dim, g.accent, g.accentText, g.raised, g.button, g.window,
+                                 light ? g.line : g.button.lighter(140)})
         sheet = sheet.arg(colour.name());
     application.setStyleSheet(sheet);
 }

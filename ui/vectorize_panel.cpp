@@ -6,11 +6,10 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
+#include <QGridLayout>
 #include <QLabel>
 #include <QLocale>
 #include <QPushButton>
-#include <QSlider>
-#include <QSpinBox>
 #include <QVBoxLayout>
 #include <cmath>
 
@@ -18,6 +17,8 @@
 #include "app/workspace.h"
 #include "core/vectorize/quality.h"
 #include "ui/action_table.h"
+#include "ui/amount_field.h"
+#include "ui/panels/gesture_slider.h"
 #include "ui/status_bar.h"
 #include "ui/widget_parts.h"
 
@@ -25,9 +26,6 @@ namespace tessera {
 
 namespace {
 
-constexpr int kMinPatches = 2;
-constexpr int kMaxPatches = 1'000'000;
-constexpr int kPanelWidthPx = 280;
 constexpr int kFieldHeightPx = 28;
 // Among the presets, what stands for the paper's method.
 const QString kPaper = "paper";
@@ -72,15 +70,13 @@ VectorizePanel::VectorizePanel(Settings& settings, const ActionTable& actions, Q
     column->addWidget(makeShowPart(actions));
     column->addWidget(mResult = makeResultPart());
     column->addStretch(1);
-    setMinimumWidth(kPanelWidthPx);
     showSession(nullptr, 0);
 }
 
 QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     auto* part = new QWidget;
     auto* column = partColumn(part);
-    column->addLayout(makePatchesRow());
-    column->addWidget(dimLabel(tr("More patches keep more detail; fewer are easier to edit.")));
+    column->addWidget(mAmount = makeAmountField());
     column->addLayout(makeQualityRow());
     column->addWidget(mFeaturesPart = makeFeaturesPart());
     column->addWidget(mEdgeContrastPart = makeEdgeContrastPart());
@@ -98,20 +94,12 @@ QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     return part;
 }
 
-QLayout* VectorizePanel::makePatchesRow() {
-    mPatches = new QSpinBox;
-    mPatches->setObjectName("patches");
-    mPatches->setRange(kMinPatches, kMaxPatches);
-    mPatches->setGroupSeparatorShown(true);
-    mPatches->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
-    mPatches->setAlignment(Qt::AlignRight);
-    mPatches->setMinimumHeight(kFieldHeightPx);
-    mPatches->setFocusPolicy(
-        Qt::StrongFocus);  // not by the wheel: it shall not change while one scrolls past
-    mPatches->setValue(mSettings.patches());
-    connect(mPatches, &QSpinBox::valueChanged, this, [this](int patches) { mSettings.setPatches(patches); });
-    connect(mPatches, &QSpinBox::editingFinished, this, &VectorizePanel::editingDone);
-    return labelled(tr("&Patches"), mPatches);
+AmountField* VectorizePanel::makeAmountField() {
+    auto* amount = new AmountField(mSettings);
+    connect(amount, &AmountField::draftWanted, this, &VectorizePanel::draftWanted);
+    connect(amount, &AmountField::draftDropped, this, &VectorizePanel::draftDropped);
+    connect(amount, &AmountField::editingDone, this, &VectorizePanel::editingDone);
+    return amount;
 }
 
 QLayout* VectorizePanel::makeQualityRow() {
@@ -139,16 +127,16 @@ QLayout* VectorizePanel::makeQualityRow() {
 }
 
 QWidget* VectorizePanel::makeFeaturesPart() {
-    mFeatures = new QSlider(Qt::Horizontal);
+    mFeatures = new GestureSlider;
     mFeatures->setObjectName("features");
     mFeatures->setRange(0, 100);
     mFeatures->setPageStep(10);
-    mFeatures->setMinimumHeight(kFieldHeightPx);
-    mFeatures->setFocusPolicy(Qt::TabFocus);
     mFeatures->setValue(int(std::lround(100 * mSettings.features())));
     connect(mFeatures, &QSlider::valueChanged, this,
             [this](int percent) { mSettings.setFeatures(percent / 100.0); });
-    connect(mFeatures, &QSlider::sliderReleased, this, &VectorizePanel::editingDone);
+    connect(mFeatures, &GestureSlider::ended, this, [this] {
+        if (mDraftShown) emit draftWanted();
+    });
     mFeatures->setToolTip(tr("How many outlines stay sharp when enlarged; to the left, none"));
     auto* part = new QWidget;
     partColumn(part)->addLayout(labelled(tr("&Outlines"), mFeatures));
@@ -179,7 +167,7 @@ QWidget* VectorizePanel::makeEdgeContrastPart() {
 
 QPushButton* VectorizePanel::makeVectorizeButton(const ActionTable& actions) {
     QAction* vectorize = actions[ActionId::Vectorize];
-    auto* button = new QPushButton(tr("Vectorize"));
+    auto* button = mApply = new QPushButton(tr("Vectorize"));
     button->setObjectName("vectorizeButton");
     button->setProperty("role", "primary");
     button->setMinimumHeight(34);
@@ -206,15 +194,22 @@ bool VectorizePanel::paperChosen() const {
 void VectorizePanel::showFieldsOfMethod() {
     mFeaturesPart->setVisible(!paperChosen());
     mEdgeContrastPart->setVisible(paperChosen());
+    mAmount->setErrorPossible(!paperChosen());
 }
 
 QWidget* VectorizePanel::makeShowPart(const ActionTable& actions) {
     auto* part = new QWidget;
     auto* column = partColumn(part);
     column->addWidget(headingLabel(tr("Show")));
-    for (const ActionId id :
-         {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowOriginal})
-        column->addWidget(boxFor(actions[id]));
+    auto* grid = new QGridLayout;
+    grid->setVerticalSpacing(8);
+    int at = 0;
+    for (const ActionId id : {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints,
+                              ActionId::ShowCentres, ActionId::ShowHeatMap, ActionId::ShowOriginal}) {
+        grid->addWidget(boxFor(actions[id]), at / 2, at % 2);
+        ++at;
+    }
+    column->addLayout(grid);
     column->addWidget(dimLabel(tr("Hold O to peek at the original.")));
     return part;
 }
@@ -243,7 +238,7 @@ VectorizeSettings VectorizePanel::settings(const DocumentSession* session) const
         settings.method = method.toStdString();
         settings.stageVariants.clear();
     }
-    settings.patches = mPatches->value();
+    settings.patches = mAmount->patches();
     if (paperChosen()) {
         // The lower threshold follows in the paper's proportion.
         const VectorizeSettings usual;
@@ -261,12 +256,22 @@ VectorizeSettings VectorizePanel::settings(const DocumentSession* session) const
     return settings;
 }
 
+std::optional<double> VectorizePanel::meanError() const {
+    return mAmount->meanError();
+}
+
 void VectorizePanel::setPatches(int patches) {
-    mPatches->setValue(patches);
+    mAmount->setPatches(patches);
+}
+
+void VectorizePanel::showDraft(std::optional<size_t> patches) {
+    mDraftShown = patches.has_value();
+    mAmount->showDraft(patches);
+    mApply->setText(mDraftShown ? tr("Apply") : tr("Vectorize"));
 }
 
 void VectorizePanel::showSettings(const VectorizeSettings& settings) {
-    setPatches(settings.patches);
+    mAmount->setPatches(settings.patches);
     if (settings.method == "paper") {
         mQuality->setCurrentIndex(mQuality->findData(kPaper));
         mEdgeContrast->setValue(100 * settings.cannyHigh);
@@ -278,6 +283,7 @@ void VectorizePanel::showSettings(const VectorizeSettings& settings) {
 
 void VectorizePanel::showSession(const DocumentSession* session, size_t features) {
     const bool hasMesh = session && session->hasMesh();
+    mAmount->setPicture(session ? QSize(session->width(), session->height()) : QSize());
     mResult->setVisible(hasMesh);
     if (!hasMesh) return;
     while (mFigures->rowCount() > 0) mFigures->removeRow(0);

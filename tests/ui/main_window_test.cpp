@@ -6,10 +6,12 @@
 #include <QDoubleSpinBox>
 #include <QFile>
 #include <QSlider>
+#include <QSpinBox>
 
 #include "core/export/rasterize.h"
 #include "core/vectorize/quality.h"
 #include "tests/ui/main_window_fixture.h"
+#include "ui/panels/gesture_slider.h"
 #include "ui/status_bar.h"
 #include "ui/theme.h"
 
@@ -69,6 +71,83 @@ TEST_F(MainWindowTest, ADocumentsOwnSettingsStay) {
     EXPECT_EQ(presetOf(window->panel().settings(session())), "draft");
     quality->setCurrentIndex(1);
     Settings().setQuality("standard");
+}
+
+// What the canvas shows while the slider goes through the drafts is no part of the document.
+TEST_F(MainWindowTest, DraftsFollowTheSliderUntilOneIsApplied) {
+    openPhoto();
+    vectorize();
+    auto* slider = window->panel().findChild<GestureSlider*>("amountSlider");
+    auto* button = window->panel().findChild<QPushButton*>("vectorizeButton");
+    ASSERT_TRUE(slider && button);
+    QTest::qWait(100);
+    ASSERT_TRUE(settled());
+    const QImage document = grab();
+    const uint64_t revision = session()->revision();
+    const auto drag = [&](double share) {
+        const QImage before = grab();
+        const QPoint to(int(slider->xOf(int(share * slider->maximum()))), slider->height() / 2);
+        QTest::mousePress(slider, Qt::LeftButton, {}, QPoint(int(slider->xOf(slider->value())), to.y()));
+        QTest::mouseMove(slider, to);
+        QTest::mouseRelease(slider, Qt::LeftButton, {}, to);
+        ASSERT_TRUE(QTest::qWaitFor([&] { return canvas().settled() && grab() != before; }, kWaitMs / 10));
+        EXPECT_EQ(button->text(), "Apply");
+    };
+    drag(.9);
+    const QImage fine = grab();
+    EXPECT_GT(difference(fine, document), 0);
+    drag(0);
+    const QImage coarse = grab();
+    EXPECT_GT(difference(coarse, fine), 0);
+    EXPECT_LT(difference(coarse, document), 30) << "no picture of the disk";
+    EXPECT_EQ(session()->revision(), revision);
+    EXPECT_EQ(window->width(), 1000) << "the name of a job has widened the window";
+    // Tools have nothing to work on, and say so.
+    QTest::mouseClick(&canvas(), Qt::LeftButton, {}, canvas().rect().center());
+    EXPECT_TRUE(session()->selection().empty());
+    EXPECT_TRUE(window->messages().text().contains("draft"));
+    QTest::keyClick(&canvas(), Qt::Key_Escape);
+    EXPECT_TRUE(window->messages().text().isEmpty());
+    QTest::qWait(50);
+    ASSERT_TRUE(settled());
+    EXPECT_EQ(button->text(), "Vectorize");
+    EXPECT_EQ(difference(grab(), document), 0);
+    drag(.5);
+    QTest::mouseClick(button, Qt::LeftButton);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(button->text(), "Vectorize");
+    EXPECT_NE(session()->revision(), revision);
+    QTest::keyClick(&canvas(), Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_EQ(session()->revision(), revision);
+}
+
+TEST_F(MainWindowTest, TheAmountCanBeADetailOrAnError) {
+    openPhoto();
+    auto* amount = window->panel().findChild<QComboBox*>("amount");
+    auto* slider = window->panel().findChild<GestureSlider*>("amountSlider");
+    auto* quality = window->panel().findChild<QComboBox*>("quality");
+    ASSERT_TRUE(amount && slider && quality);
+    amount->setFocus();
+    QTest::keyClick(amount, Qt::Key_Down);
+    window->panel().findChild<QSpinBox*>("detail")->setValue(100);
+    EXPECT_EQ(window->panel().settings(session()).patches, patchesForDetail(1, 160, 120));
+    EXPECT_EQ(slider->value(), slider->maximum());
+    QTest::keyClick(amount, Qt::Key_Down);
+    EXPECT_FALSE(slider->isVisible());
+    window->panel().findChild<QDoubleSpinBox*>("meanError")->setValue(2);
+    QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+    ASSERT_TRUE(idle());
+    ASSERT_TRUE(session()->hasMesh()) << window->messages().text().toStdString();
+    const Document& document = session()->document();
+    EXPECT_EQ(document.report.stages.front().stage, "search");
+    EXPECT_TRUE(std::abs(document.difference->mae - 2) < .2 || !document.report.shortfall.empty());
+    // The paper's method can search for no error.
+    quality->setFocus();
+    QTest::keyClick(quality, Qt::Key_End);
+    EXPECT_EQ(amount->currentIndex(), 0);
+    EXPECT_FALSE(window->panel().meanError().has_value());
+    Settings().setQuality("standard");
+    Settings().setAmount("patches");
 }
 
 TEST_F(MainWindowTest, ShowsThePhotoPixelForPixelAt100Percent) {

@@ -33,6 +33,7 @@ SelectMode modeOf(Qt::KeyboardModifiers modifiers) {
 StoredList::StoredList(QWidget* parent) : QListWidget(parent) {
     setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed);
     setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
+    setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     setToolTip(tr("Click to select; Shift adds, Alt subtracts. F2 renames, Delete removes"));
 }
 
