@@ -174,7 +174,7 @@ void AmountField::showHint() {
         mHint->setText(tr("A draft with %1 patches. Apply makes the full one, Escape goes back.")
                            .arg(countText(*mDraft)));
     else if (kind() == Patches)
-        mHint->setText(tr("More patches keep more detail; fewer are easier to edit."));
+        mHint->setText(tr("More keep detail; fewer are easier to edit."));
     else if (kind() == Error)
         mHint->setText(tr("As many patches as it takes: two or three runs."));
     else if (mPicture.isEmpty())

@@ -227,7 +227,8 @@ void CanvasWidget::zoomTo(double scale) {
 
 void CanvasWidget::fit() {
     ViewTransform view = mView;
-    view.fit(pictureSize(), deviceSize(), kFitMarginPx * devicePixelRatioF());
+    const double ratio = devicePixelRatioF();
+    view.fit(pictureSize(), deviceSize(), kFitMarginPx * ratio, ratio);
     zoomView(view);
     mFitted = true;
 }
@@ -336,7 +337,10 @@ void CanvasWidget::reportCursor() {
     std::optional<QPointF> image;
     if (mCursor && mSession) {
         const QPointF point = mView.toImage(*mCursor);
-        if (QRectF(QPointF(0, 0), pictureSize()).contains(point)) image = point;
+        // A point on the right or lower border is in no pixel.
+        const QSizeF size = pictureSize();
+        if (point.x() >= 0 && point.y() >= 0 && point.x() < size.width() && point.y() < size.height())
+            image = point;
     }
     emit cursorMoved(image, image ? shownColour(*image) : QColor());
 }

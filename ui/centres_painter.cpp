@@ -13,7 +13,7 @@ namespace {
 
 // Centres of a patch appear where each has a square of this side for itself.
 constexpr double kSpacingPx = 13;
-constexpr double kMarkPx = 5.5;
+constexpr double kMarkPx = 8;
 const QColor kFill(150, 255, 170);
 const QColor kOutline(0, 24, 8, 230);
 
@@ -40,7 +40,7 @@ void paintCentres(QPainter& painter, const PatchMesh& mesh, const ViewTransform&
     });
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing);
-    painter.setPen(QPen(kOutline, 1.4 * pixelRatio));
+    painter.setPen(QPen(kOutline, 1.2 * pixelRatio));
     painter.setBrush(kFill);
     const double radius = .5 * kMarkPx * pixelRatio;
     for (const QPointF centre : centres) {

@@ -3,7 +3,7 @@
 
 #include <QApplication>
 #include <QPalette>
-#include <QStyleFactory>
+#include <QProxyStyle>
 
 namespace tessera {
 
@@ -60,8 +60,6 @@ const char* const kSheet = R"(
     QToolTip { color: %2; background: %6; border: 1px solid %1; padding: 4px 6px; }
     QLabel[role="heading"] { color: %3; font-weight: bold; }
     QLabel[role="dim"] { color: %3; }
-    QMenu { etch-disabled-text: 0; }
-    QDialogButtonBox { dialogbuttonbox-buttons-have-icons: 0; }
     QScrollBar:vertical { background: %8; width: 10px; margin: 0; }
     QScrollBar:horizontal { background: %8; height: 10px; margin: 0; }
     QScrollBar::handle { background: %9; border-radius: 3px; margin: 2px; }
@@ -83,6 +81,18 @@ const char* const kSheet = R"(
     QFrame[role="line"] { background: %1; border: none; max-height: 1px; min-height: 1px; }
 )";
 
+// Fusion without the shadows under disabled text and without pictures in dialogs' buttons.
+class QuietStyle : public QProxyStyle {
+  public:
+    QuietStyle() : QProxyStyle("Fusion") {}
+
+    int styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget,
+                  QStyleHintReturn* data) const override {
+        if (hint == SH_EtchDisabledText || hint == SH_DialogButtonBox_ButtonsHaveIcons) return 0;
+        return QProxyStyle::styleHint(hint, option, widget, data);
+    }
+};
+
 }  // namespace
 
 Theme shownTheme(Theme theme) {
@@ -101,13 +111,16 @@ CanvasColours canvasColours(Theme theme) {
 void applyTheme(QApplication& application, Theme theme) {
     const bool light = shownTheme(theme) == Theme::Light;
     const Greys& g = light ? kLight : kDark;
-    application.setStyle(QStyleFactory::create("Fusion"));
+    application.setStyle(new QuietStyle);
     const QPalette palette = paletteOf(g);
     application.setPalette(palette);
     // Fusion outlines a check box with a darker grey, which cannot be seen on a dark window: fill it lighter.
     QPalette checkBoxes = palette;
     checkBoxes.setColor(QPalette::Base, light ? g.base : g.button.lighter(130));
     QApplication::setPalette(checkBoxes, "QCheckBox");
+    QPalette menus = palette;
+    menus.setColor(QPalette::Base, light ? g.base : g.raised);
+    QApplication::setPalette(menus, "QMenu");
     QString sheet = kSheet;
     for (const QColor& colour : {g.line, g.text, g.dim, g.accent, g.accentText, g.raised, g.button, g.window,
                                  light ? g.line : g.button.lighter(140)})

@@ -210,7 +210,6 @@ QWidget* VectorizePanel::makeShowPart(const ActionTable& actions) {
         ++at;
     }
     column->addLayout(grid);
-    column->addWidget(dimLabel(tr("Hold O to peek at the original.")));
     return part;
 }
 

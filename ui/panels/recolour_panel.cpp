@@ -102,7 +102,7 @@ QWidget* RecolourPanel::makeReplacePart() {
     auto* use =
         panelButton(tr("Use colour"), tr("Give the selection the colour above; shading stays"), "use");
     connect(use, &QPushButton::clicked, this, [this] { replaceBy(mColour->colour()); });
-    grid->addWidget(dimLabel(tr("Selection; a new colour keeps its shading")), 0, 0, 1, 2);
+    grid->addWidget(dimLabel(tr("Colour of the selection; its shading stays")), 0, 0, 1, 2);
     grid->addWidget(mMean, 1, 0);
     grid->addWidget(use, 1, 1);
     return part;
