@@ -81,6 +81,9 @@ void AmountField::makeFields() {
     mError->setSingleStep(.25);
     mError->setSuffix(tr(" of 255"));
     mError->setValue(mSettings.meanError());
+    mPatches->setToolTip(tr("How many patches to aim at"));
+    mDetail->setToolTip(tr("From a few large patches to one for every texture"));
+    mError->setToolTip(tr("The mean difference from the photo, in levels of a channel"));
     for (QAbstractSpinBox* field : std::initializer_list<QAbstractSpinBox*>{mPatches, mDetail, mError}) {
         field->setAlignment(Qt::AlignRight);
         field->setGroupSeparatorShown(true);

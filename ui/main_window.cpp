@@ -291,10 +291,10 @@ void MainWindow::showTabs() {
 
 void MainWindow::showView() {
     const double scale = mCanvas->view().scale();
-    mStatus->showZoom(scale);
     mTopRuler->setView(mCanvas->view());
     mLeftRuler->setView(mCanvas->view());
     const DocumentSession* session = mWorkspace.session();
+    mStatus->showZoom(session ? std::optional(scale) : std::nullopt);
     mNavigator->setScale(scale);
     mNavigator->setVisibleRect(mCanvas->visiblePart(),
                                session ? QSizeF(session->width(), session->height()) : QSizeF());

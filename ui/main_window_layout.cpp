@@ -57,12 +57,13 @@ QWidget* MainWindow::makeCentre() {
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setSpacing(0);
     grid->addWidget(mTabs = new QTabBar, 0, 0, 1, 2);
-    grid->addWidget(mMessages = new MessageBar, 1, 0, 1, 2);
-    grid->addWidget(mCorner = new QWidget, 2, 0);
-    grid->addWidget(mTopRuler = new Ruler(Qt::Horizontal), 2, 1);
-    grid->addWidget(mLeftRuler = new Ruler(Qt::Vertical), 3, 0);
-    grid->addWidget(mCanvas = new CanvasWidget, 3, 1);
-    grid->setRowStretch(3, 1);
+    grid->addWidget(mCorner = new QWidget, 1, 0);
+    grid->addWidget(mTopRuler = new Ruler(Qt::Horizontal), 1, 1);
+    grid->addWidget(mLeftRuler = new Ruler(Qt::Vertical), 2, 0);
+    grid->addWidget(mCanvas = new CanvasWidget, 2, 1);
+    // Over the canvas, so that the picture stays where it is when one has something to say.
+    grid->addWidget(mMessages = new MessageBar, 2, 1, Qt::AlignTop);
+    grid->setRowStretch(2, 1);
     grid->setColumnStretch(1, 1);
     mTabs->setObjectName("documents");
     mTabs->setTabsClosable(true);

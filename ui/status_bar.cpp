@@ -130,8 +130,9 @@ void StatusBar::showSelection(size_t patches) {
     mSelected->setText(patches == 0 ? QString() : tr("%1 selected  ·").arg(countText(patches)));
 }
 
-void StatusBar::showZoom(double scale) {
-    mZoom->setText(zoomText(scale));
+void StatusBar::showZoom(std::optional<double> scale) {
+    mZoom->setEnabled(scale.has_value());
+    mZoom->setText(scale ? zoomText(*scale) : QString());
 }
 
 void StatusBar::showCursor(std::optional<QPointF> image, QColor colour) {

@@ -33,6 +33,7 @@ const QString kPaper = "paper";
 QHBoxLayout* labelled(const QString& text, QWidget* field) {
     auto* label = new QLabel(text);
     label->setBuddy(field);
+    field->setAccessibleName(QString(text).remove('&'));
     auto* row = new QHBoxLayout;
     row->addWidget(label);
     row->addWidget(field, 1);
@@ -84,8 +85,10 @@ QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     column->addSpacing(4);
     column->addWidget(makeVectorizeButton(actions));
     column->addSpacing(4);
-    column->addWidget(makeOption(tr("Vectorize photos when opened"), mSettings.vectorizeOnOpen(),
-                                 &Settings::setVectorizeOnOpen));
+    auto* onOpen = makeOption(tr("Vectorize photos when opened"), mSettings.vectorizeOnOpen(),
+                              &Settings::setVectorizeOnOpen);
+    onOpen->setToolTip(tr("Start at once, with what is set here; it can be cancelled and done again"));
+    column->addWidget(onOpen);
     auto* embed =
         makeOption(tr("Keep the photo in the saved file"), mSettings.embedPhoto(), &Settings::setEmbedPhoto);
     embed->setToolTip(

@@ -319,6 +319,18 @@ TEST_F(MainWindowTest, CancelLeavesTheDocumentUntouched) {
     EXPECT_TRUE(window->messages().text().isEmpty()) << "what one asked for is no error";
 }
 
+TEST_F(MainWindowTest, AMessageLeavesThePictureWhereItIs) {
+    openPhoto();
+    const QRect before = canvas().geometry();
+    const QPointF origin = canvas().view().origin();
+    window->messages().show({.kind = Message::Kind::Error, .text = "Something has failed."});
+    QTest::qWait(50);
+    EXPECT_TRUE(window->messages().isVisible());
+    EXPECT_EQ(canvas().geometry(), before);
+    EXPECT_EQ(canvas().view().origin(), origin);
+    EXPECT_TRUE(window->messages().geometry().intersects(before));
+}
+
 TEST_F(MainWindowTest, OpensWhatIsDropped) {
     drop(photo);
     ASSERT_TRUE(idle());
