@@ -2,8 +2,10 @@
 #include "ui/theme.h"
 
 #include <QApplication>
+#include <QPainter>
 #include <QPalette>
 #include <QProxyStyle>
+#include <QStyleOption>
 
 namespace tessera {
 
@@ -81,7 +83,8 @@ const char* const kSheet = R"(
     QFrame[role="line"] { background: %1; border: none; max-height: 1px; min-height: 1px; }
 )";
 
-// Fusion without the shadows under disabled text and without pictures in dialogs' buttons.
+// Fusion without the shadows under disabled text, without pictures in dialogs' buttons, and with crosses in
+// the theme's colours to close tabs by.
 class QuietStyle : public QProxyStyle {
   public:
     QuietStyle() : QProxyStyle("Fusion") {}
@@ -90,6 +93,23 @@ class QuietStyle : public QProxyStyle {
                   QStyleHintReturn* data) const override {
         if (hint == SH_EtchDisabledText || hint == SH_DialogButtonBox_ButtonsHaveIcons) return 0;
         return QProxyStyle::styleHint(hint, option, widget, data);
+    }
+
+    void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
+                       const QWidget* widget) const override {
+        if (element != PE_IndicatorTabClose)
+            return QProxyStyle::drawPrimitive(element, option, painter, widget);
+        constexpr double kReachPx = 3.5;
+        const bool hovered = option->state.testFlag(State_MouseOver);
+        const QPointF centre = QRectF(option->rect).center();
+        painter->save();
+        painter->setRenderHint(QPainter::Antialiasing);
+        painter->setPen(
+            QPen(option->palette.color(hovered ? QPalette::WindowText : QPalette::PlaceholderText), 1.4,
+                 Qt::SolidLine, Qt::RoundCap));
+        for (const double side : {-1., 1.})
+            painter->drawLine(centre + kReachPx * QPointF(-1, side), centre + kReachPx * QPointF(1, -side));
+        painter->restore();
     }
 };
 
