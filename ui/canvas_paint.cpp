@@ -50,12 +50,25 @@ void CanvasWidget::paintEvent(QPaintEvent*) {
     paintGround(painter);
     if (!mSession) return;
     painter.setClipRect(mView.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect());
-    paintPicture(painter);
+    mToScreen ? paintPictureManaged(painter) : paintPicture(painter);
     if (!mHeatMap.isNull() && !mDrafting)
         drawClipped(painter, mHeatMap, mView.toScreen(QRectF(QPointF(0, 0), pictureSize())), deviceRect());
     if (mView.scale() >= kGridFromScale * ratio) paintPixelGrid(painter);
     painter.setClipping(false);
     paintOverlays(painter);
+}
+
+void CanvasWidget::paintPictureManaged(QPainter& painter) const {
+    const QRect area = painter.clipBoundingRect().toAlignedRect();
+    if (area.isEmpty()) return;
+    QImage picture(area.size(), QImage::Format_ARGB32_Premultiplied);
+    picture.fill(Qt::transparent);
+    QPainter inner(&picture);
+    inner.translate(-area.topLeft());
+    paintPicture(inner);
+    inner.end();
+    picture.applyColorTransform(*mToScreen);
+    painter.drawImage(area.topLeft(), picture);
 }
 
 void CanvasWidget::paintPicture(QPainter& painter) const {

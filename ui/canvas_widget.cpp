@@ -184,6 +184,13 @@ void CanvasWidget::setTheme(Theme theme) {
     update();
 }
 
+void CanvasWidget::setScreenColours(const QColorSpace& space) {
+    const QColorSpace pictures(QColorSpace::SRgb);
+    mToScreen.reset();
+    if (space.isValid() && space != pictures) mToScreen = pictures.transformationToColorSpace(space);
+    update();
+}
+
 QSizeF CanvasWidget::pictureSize() const {
     return mSession ? QSizeF(mSession->width(), mSession->height()) : QSizeF();
 }

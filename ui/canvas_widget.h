@@ -2,6 +2,8 @@
 // into what tools understand.
 #pragma once
 
+#include <QColorSpace>
+#include <QColorTransform>
 #include <QElapsedTimer>
 #include <QWidget>
 #include <optional>
@@ -28,6 +30,9 @@ class CanvasWidget : public QWidget {
     // next call.
     void setSession(DocumentSession* session);
     void setTheme(Theme theme);
+    // That of the window's surface, into which pictures are converted; pictures are shown as they are, in
+    // sRGB, where it is not valid.
+    void setScreenColours(const QColorSpace& space);
     // Null: the CPU renderer.
     void setDrawer(std::unique_ptr<FrameDrawer> drawer) { mFrames.setDrawer(std::move(drawer)); }
     // Whose tools get what pointer and keys do here; outlives the canvas.
@@ -130,6 +135,8 @@ class CanvasWidget : public QWidget {
     QColor shownColour(QPointF image) const;
 
     void paintGround(QPainter& painter);
+    // In the colours of the screen.
+    void paintPictureManaged(QPainter& painter) const;
     void paintPicture(QPainter& painter) const;
     void paintPhoto(QPainter& painter) const;
     void paintSplit(QPainter& painter) const;
@@ -146,6 +153,7 @@ class CanvasWidget : public QWidget {
     OverlayPainter mOverlay;
     OverlayOptions mOverlays;
     CanvasColours mColours;
+    std::optional<QColorTransform> mToScreen;  // from sRGB, where the screen has other colours
     std::vector<EdgeId> mSelectionOutline;
     std::vector<EdgeId> mHighlightOutline;
     QImage mHeatMap;

@@ -7,6 +7,7 @@
 #include <QMenu>
 #include <QMessageBox>
 #include <QTabBar>
+#include <QWindow>
 #include <utility>
 
 #include "ui/action_table.h"
@@ -442,6 +443,12 @@ void MainWindow::changeEvent(QEvent* event) {
     if (event->type() == QEvent::PaletteChange && mActions) mActions->tintIcons(palette());
     if (event->type() == QEvent::ActivationChange && !isActiveWindow()) mTools.cancel();
     QMainWindow::changeEvent(event);
+}
+
+void MainWindow::showEvent(QShowEvent* event) {
+    QMainWindow::showEvent(event);
+    // Known from now on. Qt gives it on platforms that manage colours by surface, and else none.
+    mCanvas->setScreenColours(windowHandle()->format().colorSpace());
 }
 
 void MainWindow::showPreferences() {

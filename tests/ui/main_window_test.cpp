@@ -160,6 +160,23 @@ TEST_F(MainWindowTest, ShowsThePhotoPixelForPixelAt100Percent) {
     EXPECT_EQ(difference(shown, QImage(photo)), 0);
 }
 
+TEST_F(MainWindowTest, PicturesAreInTheColoursOfTheScreen) {
+    openPhoto();
+    QTest::keyClick(&canvas(), Qt::Key_1, Qt::ControlModifier);
+    const QRect area(canvas().view().origin().toPoint(), QSize(160, 120));
+    const QImage plain = grab();
+    canvas().setScreenColours(QColorSpace::DisplayP3);
+    const QImage wide = grab();
+    QImage expected = plain.copy(area);
+    expected.applyColorTransform(
+        QColorSpace(QColorSpace::SRgb).transformationToColorSpace(QColorSpace::DisplayP3));
+    EXPECT_LT(difference(wide.copy(area), expected), .5);
+    EXPECT_GT(difference(wide.copy(area), plain.copy(area)), 2);
+    EXPECT_EQ(wide.pixelColor(2, 2), plain.pixelColor(2, 2)) << "the ground is no picture";
+    canvas().setScreenColours(QColorSpace::SRgb);
+    EXPECT_EQ(difference(grab(), plain), 0);
+}
+
 TEST_F(MainWindowTest, VectorizesInTheBackgroundAndUndoes) {
     openPhoto();
     window->panel().setPatches(kPatches);
