@@ -90,10 +90,8 @@ bool FrameSource::settled() const {
 
 void FrameSource::startNext() {
     if (mJob || mMesh.patchCount() == 0 || (mDrawer && drawAtOnce())) return;
-    const double scale = std::min(1.0, kOverviewPx / std::max(mMesh.width(), mMesh.height()));
-    const View whole = wholePicture(mMesh, {scale, scale});
     mRefining = false;
-    if (!mOverview) return draw(whole, 1, &FrameSource::keepOverview);
+    if (!mOverview) return draw(overviewView(), 1, &FrameSource::keepOverview);
     if (!mWish || mWish->width <= 0 || mWish->height <= 0 || settled()) return;
     if (!mLatest || !sameView(mLatest->view, *mWish)) {
         mDirty.reset();
@@ -106,17 +104,20 @@ void FrameSource::startNext() {
     }
     if (mOverviewOld && mLatest->samples == kPictureSamples) {
         mOverviewOld = false;
-        return draw(whole, 1, &FrameSource::keepOverview);
+        return draw(overviewView(), 1, &FrameSource::keepOverview);
     }
     mRefining = true;
     draw(*mWish, kPictureSamples, &FrameSource::keepLatest);
 }
 
+View FrameSource::overviewView() const {
+    const double scale = std::min(1.0, kOverviewPx / std::max(mMesh.width(), mMesh.height()));
+    return wholePicture(mMesh, {scale, scale});
+}
+
 bool FrameSource::drawAtOnce() {
     if (!mWish || mWish->width <= 0 || mWish->height <= 0 || settled()) return true;
-    const double scale = std::min(1.0, kOverviewPx / std::max(mMesh.width(), mMesh.height()));
-    const View whole = wholePicture(mMesh, {scale, scale});
-    for (const auto& [view, frame] : {std::pair{*mWish, &mLatest}, std::pair{whole, &mOverview}}) {
+    for (const auto& [view, frame] : {std::pair{*mWish, &mLatest}, std::pair{overviewView(), &mOverview}}) {
         Result<QImage> image = mDrawer->draw(view);
         if (!image) {
             mDrawer.reset();

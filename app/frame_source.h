@@ -48,6 +48,7 @@ class FrameSource : public QObject {
   private:
     void startNext();
     void startSoon();
+    View overviewView() const;
     // Whether the drawer has drawn all that was wished.
     bool drawAtOnce();
     void draw(const View& view, int samples, void (FrameSource::*keep)(Frame));

@@ -13,6 +13,8 @@ namespace tessera {
 namespace {
 
 constexpr int kDefaultPatches = 2000;
+constexpr double kDefaultDetail = .6;
+constexpr double kDefaultMeanError = 3;
 constexpr int kDefaultAutosaveSeconds = 120;
 
 template <class Value>
@@ -89,6 +91,30 @@ Theme Settings::theme() const {
 
 void Settings::setTheme(Theme theme) {
     mSettings.setValue("window/theme", nameOf(kThemes, theme));
+}
+
+QString Settings::amount() const {
+    return mSettings.value("vectorize/amount", "patches").toString();
+}
+
+void Settings::setAmount(const QString& amount) {
+    mSettings.setValue("vectorize/amount", amount);
+}
+
+double Settings::detail() const {
+    return mSettings.value("vectorize/detail", kDefaultDetail).toDouble();
+}
+
+void Settings::setDetail(double detail) {
+    mSettings.setValue("vectorize/detail", detail);
+}
+
+double Settings::meanError() const {
+    return mSettings.value("vectorize/meanError", kDefaultMeanError).toDouble();
+}
+
+void Settings::setMeanError(double levels) {
+    mSettings.setValue("vectorize/meanError", levels);
 }
 
 int Settings::patches() const {

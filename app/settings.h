@@ -31,8 +31,16 @@ class Settings {
     Theme theme() const;
     void setTheme(Theme theme);
 
+    // What says how many patches there shall be: "patches", "detail" (0..1, as patchesForDetail has it) or
+    // "error" (the mean, in levels of 255).
+    QString amount() const;
+    void setAmount(const QString& amount);
     int patches() const;
     void setPatches(int patches);
+    double detail() const;
+    void setDetail(double detail);
+    double meanError() const;
+    void setMeanError(double levels);
     // A preset of core/vectorize/quality.h.
     QString quality() const;
     void setQuality(const QString& preset);

@@ -81,8 +81,8 @@ DocumentSession* Workspace::adopt(OpenedFile opened) {
                                         std::move(opened.path), std::move(opened.photoPath), this);
     session->history().setMemoryLimit(mHistoryLimit);
     mSessions.append(session);
-    emit sessionAdded(session);
     setCurrent(session);
+    emit sessionAdded(session);
     return session;
 }
 
@@ -144,7 +144,8 @@ void Workspace::close(DocumentSession* session, const AskToClose& ask, std::func
             const QString path = answer.path.isEmpty() ? target->path() : answer.path;
             if (answer.kind == CloseAnswer::Kind::Save) {
                 if (path.isEmpty()) return finished(false);
-                return save(target, path, answer.embedPhoto, [this, target, ask, finished] {
+                return save(target, path, answer.embedPhoto, [this, target, ask, finished](bool written) {
+                    if (!written) return finished(false);
                     if (target) close(target, ask, finished);
                 });
             }
@@ -165,6 +166,7 @@ void Workspace::closeAll(const AskToClose& ask, std::function<void(bool)> then) 
 void Workspace::remove(DocumentSession* session) {
     stopAll(JobKind::Vectorize, session);
     stopAll(JobKind::Relink, session);
+    stopAll(JobKind::Drafts, session);
     const qsizetype at = mSessions.indexOf(session);
     mSessions.removeAt(at);
     // The neighbour on the right takes its place, or else the one on the left.

@@ -14,6 +14,7 @@
 #include "app/jobs/job.h"
 #include "app/jobs/vectorize_job.h"
 #include "app/message.h"
+#include "core/vectorize/draft_ladder.h"
 #include "core/vectorize/settings.h"
 
 namespace tessera {
@@ -65,13 +66,17 @@ class Workspace : public QObject {
     void closeAll(const AskToClose& ask, std::function<void(bool)> then);
 
     // Needs a photo; does nothing while a vectorization of it is running. The result becomes one undoable
-    // step.
-    void vectorize(const VectorizeSettings& settings);
+    // step. With `meanError` (levels of 255) the patches are those that it takes, and not the settings'.
+    void vectorize(const VectorizeSettings& settings, std::optional<double> meanError = {});
     bool canVectorize() const;
-    // Saves a snapshot of a document with patches, after a save that is still running; `then` runs after it
-    // has been written, and not where that failed.
-    void save(const QString& path, bool embedPhoto, std::function<void()> then = {});
-    void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void()> then);
+    // Builds the drafts of the current photo around the settings' number of patches; `then` hears of it
+    // unless the document is closed first, and gets null where that failed or was stopped.
+    void buildDrafts(const VectorizeSettings& settings,
+                     std::function<void(std::shared_ptr<const DraftLadder>)> then);
+    // Saves a snapshot of a document with patches, after a save that is still running; `then` hears whether
+    // it has been written, after the message about it where it has not.
+    void save(const QString& path, bool embedPhoto, std::function<void(bool)> then = {});
+    void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void(bool)> then);
     void exportPicture(const ExportRequest& request);
 
     // Of all documents, those to come included.
@@ -87,6 +92,7 @@ class Workspace : public QObject {
   signals:
     // Another document is the current one, or none. The one before is still there.
     void sessionChanged();
+    // It is the current one already.
     void sessionAdded(tessera::DocumentSession* session);
     // For the last time; it goes when control is back in the event loop.
     void sessionClosed(tessera::DocumentSession* session);
@@ -107,11 +113,10 @@ class Workspace : public QObject {
 
     DocumentSession* adopt(OpenedFile opened);
     void remove(DocumentSession* session);
-    void applyVectorized(DocumentSession& session, uint64_t revision, const VectorizeSettings& settings,
-                         Vectorized vectorized);
+    void applyVectorized(DocumentSession& session, uint64_t revision, Vectorized vectorized);
     void applyRelinked(DocumentSession& session, OpenedFile opened, const QString& path);
     void startSave(DocumentSession& session, const QString& path, bool embedPhoto,
-                   std::function<void()> then);
+                   std::function<void(bool)> then);
     Job* find(JobKind kind, const DocumentSession* session) const;
     void track(Job* job, const DocumentSession* session);
     void stopAll(JobKind kind, const DocumentSession* session);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/jobs/draft_job.h"
 #include "app/jobs/save_job.h"
 #include "app/workspace.h"
 
@@ -13,24 +14,36 @@ bool Workspace::canVectorize() const {
     return mCurrent && mCurrent->photo().image && !running(JobKind::Vectorize);
 }
 
-void Workspace::vectorize(const VectorizeSettings& settings) {
+void Workspace::vectorize(const VectorizeSettings& settings, std::optional<double> meanError) {
     if (!canVectorize()) return;
     const QPointer<DocumentSession> session = mCurrent;
     const uint64_t revision = mCurrent->revision();
-    Job* job = startVectorizeJob(
+    Job* job =
+        startVectorizeJob(this, mCurrent->displayName(), mCurrent->photo().image, settings, meanError,
+                          [this, session, revision](Result<Vectorized> vectorized) {
+                              if (!session) return;
+                              if (!vectorized) return report(vectorized.error());
+                              session->whenIdle([this, session, revision, result = std::move(*vectorized)] {
+                                  applyVectorized(*session, revision, result);
+                              });
+                          });
+    track(job, mCurrent);
+}
+
+void Workspace::buildDrafts(const VectorizeSettings& settings,
+                            std::function<void(std::shared_ptr<const DraftLadder>)> then) {
+    const QPointer<DocumentSession> session = mCurrent;
+    Job* job = startLadderJob(
         this, mCurrent->displayName(), mCurrent->photo().image, settings,
-        [this, session, revision, settings](Result<Vectorized> vectorized) {
+        [this, session, then = std::move(then)](Result<std::shared_ptr<const DraftLadder>> ladder) {
             if (!session) return;
-            if (!vectorized) return report(vectorized.error());
-            session->whenIdle([this, session, revision, settings, result = std::move(*vectorized)] {
-                applyVectorized(*session, revision, settings, result);
-            });
+            if (!ladder) report(ladder.error());
+            then(ladder ? std::move(*ladder) : nullptr);
         });
     track(job, mCurrent);
 }
 
-void Workspace::applyVectorized(DocumentSession& session, uint64_t revision,
-                                const VectorizeSettings& settings, Vectorized vectorized) {
+void Workspace::applyVectorized(DocumentSession& session, uint64_t revision, Vectorized vectorized) {
     Document after = session.document();
     const bool dropped = !after.selections.empty();
     after.mesh = std::move(vectorized.result.mesh);
@@ -38,7 +51,7 @@ void Workspace::applyVectorized(DocumentSession& session, uint64_t revision,
     after.fitted.reset();
     after.selections.clear();
     after.colourStep.reset();
-    after.settings = settings;
+    after.settings = std::move(vectorized.settings);
     after.report = std::move(vectorized.result.report);
     after.difference = vectorized.difference;
     QString remarks = asSentence(after.report.shortfall);
@@ -64,12 +77,12 @@ void Workspace::applyVectorized(DocumentSession& session, uint64_t revision,
     if (!remarks.isEmpty()) emit said({.kind = Message::Kind::Info, .text = remarks});
 }
 
-void Workspace::save(const QString& path, bool embedPhoto, std::function<void()> then) {
+void Workspace::save(const QString& path, bool embedPhoto, std::function<void(bool)> then) {
     if (mCurrent) save(mCurrent, path, embedPhoto, std::move(then));
 }
 
 void Workspace::save(DocumentSession* session, const QString& path, bool embedPhoto,
-                     std::function<void()> then) {
+                     std::function<void(bool)> then) {
     if (!session->hasMesh()) return;
     session->whenIdle([this, session, path, embedPhoto, then = std::move(then)] {
         Job* const job = find(JobKind::Save, session);
@@ -79,13 +92,13 @@ void Workspace::save(DocumentSession* session, const QString& path, bool embedPh
         connect(job, &Job::finished, this, [this, target, path, embedPhoto, then] {
             if (!target) return;
             if (target->modified() || target->path() != path) return save(target, path, embedPhoto, then);
-            if (then) then();
+            if (then) then(true);
         });
     });
 }
 
 void Workspace::startSave(DocumentSession& session, const QString& path, bool embedPhoto,
-                          std::function<void()> then) {
+                          std::function<void(bool)> then) {
     Document snapshot = session.document();
     if (!embedPhoto)
         snapshot.embeddedSource.reset();
@@ -95,13 +108,17 @@ void Workspace::startSave(DocumentSession& session, const QString& path, bool em
     const uint64_t revision = session.revision();
     Job* job = startSaveJob(this, std::move(snapshot), path,
                             [this, target, revision, path, then = std::move(then)](Result<Saved> written) {
-                                if (!written) return report(written.error());
+                                if (!written) {
+                                    report(written.error());
+                                    if (then) then(false);
+                                    return;
+                                }
                                 emit fileUsed(path);
                                 if (target) {
                                     target->markSaved(revision, path, written->colourStep);
                                     emit saved(target);
                                 }
-                                if (then) then();
+                                if (then) then(true);
                             });
     track(job, &session);
 }

@@ -109,6 +109,8 @@ void CanvasWidget::mousePressEvent(QMouseEvent* event) {
         return;
     } else if (overSplitLine(*mCursor)) {
         mDraggingSplit = true;
+    } else if (mDrafting) {
+        emit draftPressed();
     } else if (mTools) {
         mPressed = true;
         mTools->press(toolEvent(event->position(), event->modifiers()));
@@ -117,7 +119,7 @@ void CanvasWidget::mousePressEvent(QMouseEvent* event) {
 }
 
 void CanvasWidget::mouseDoubleClickEvent(QMouseEvent* event) {
-    if (event->button() != Qt::LeftButton || mSpace || !mTools || !mSession) return mousePressEvent(event);
+    if (event->button() != Qt::LeftButton || mSpace || !toolsInUse()) return mousePressEvent(event);
     mPressed = true;
     mTools->doubleClick(toolEvent(event->position(), event->modifiers()));
 }
@@ -137,7 +139,7 @@ void CanvasWidget::mouseMoveEvent(QMouseEvent* event) {
     if (mDraggingSplit) {
         mSplitAt = std::clamp(position.x() / deviceSize().width(), 0., 1.);
         update();
-    } else if (mTools && mSession) {
+    } else if (toolsInUse()) {
         mTools->move(toolEvent(event->position(), event->modifiers()));
     }
     if (mXRay) update();
@@ -156,7 +158,7 @@ void CanvasWidget::mouseReleaseEvent(QMouseEvent* event) {
 }
 
 void CanvasWidget::contextMenuEvent(QContextMenuEvent* event) {
-    if (mSession && mSession->hasMesh()) emit contextMenuWanted(event->globalPos());
+    if (toolsInUse() && mSession->hasMesh()) emit contextMenuWanted(event->globalPos());
 }
 
 void CanvasWidget::leaveEvent(QEvent*) {
@@ -183,7 +185,9 @@ void CanvasWidget::keyPressEvent(QKeyEvent* event) {
         setPeeking(true);
     else if (event->key() == Qt::Key_Space)
         setSpace(true);
-    else if (!mTools || !mSession || !mTools->keyPress(toolKey(*event)))
+    else if (mDrafting && event->key() == Qt::Key_Escape)
+        emit draftLeft();
+    else if (!toolsInUse() || !mTools->keyPress(toolKey(*event)))
         QWidget::keyPressEvent(event);
 }
 
@@ -194,7 +198,7 @@ void CanvasWidget::keyReleaseEvent(QKeyEvent* event) {
         setPeeking(false);
     else if (event->key() == Qt::Key_Space)
         setSpace(false);
-    else if (!mTools || !mSession || !mTools->keyRelease(toolKey(*event)))
+    else if (!toolsInUse() || !mTools->keyRelease(toolKey(*event)))
         QWidget::keyReleaseEvent(event);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ui/canvas_widget.h"
+#include "ui/centres_painter.h"
 #include "ui/tool_overlay_painter.h"
 
 namespace tessera {
@@ -49,12 +50,25 @@ void CanvasWidget::paintEvent(QPaintEvent*) {
     paintGround(painter);
     if (!mSession) return;
     painter.setClipRect(mView.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect());
-    paintPicture(painter);
-    if (!mHeatMap.isNull())
+    mToScreen ? paintPictureManaged(painter) : paintPicture(painter);
+    if (!mHeatMap.isNull() && !mDrafting)
         drawClipped(painter, mHeatMap, mView.toScreen(QRectF(QPointF(0, 0), pictureSize())), deviceRect());
     if (mView.scale() >= kGridFromScale * ratio) paintPixelGrid(painter);
     painter.setClipping(false);
     paintOverlays(painter);
+}
+
+void CanvasWidget::paintPictureManaged(QPainter& painter) const {
+    const QRect area = painter.clipBoundingRect().toAlignedRect();
+    if (area.isEmpty()) return;
+    QImage picture(area.size(), QImage::Format_ARGB32_Premultiplied);
+    picture.fill(Qt::transparent);
+    QPainter inner(&picture);
+    inner.translate(-area.topLeft());
+    paintPicture(inner);
+    inner.end();
+    picture.applyColorTransform(*mToScreen);
+    painter.drawImage(area.topLeft(), picture);
 }
 
 void CanvasWidget::paintPicture(QPainter& painter) const {
@@ -111,12 +125,14 @@ void CanvasWidget::paintPixelGrid(QPainter& painter) const {
 }
 
 void CanvasWidget::paintOverlays(QPainter& painter) const {
-    if (!mSession->hasMesh()) return;
+    if (mMesh.patchCount() == 0) return;
     const double ratio = devicePixelRatioF();
     mOverlay.paint(painter, mView, deviceRect(), ratio, mOverlays);
+    if (mOverlays.centres) paintCentres(painter, mMesh, mView, deviceRect(), ratio);
     mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mHighlightOutline, kHighlight);
     mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mSelectionOutline, kSelection);
-    if (mTools) paintToolOverlay(painter, mTools->overlay(), mOverlay, mMesh, mView, deviceRect(), ratio);
+    if (toolsInUse())
+        paintToolOverlay(painter, mTools->overlay(), mOverlay, mMesh, mView, deviceRect(), ratio);
 }
 
 void CanvasWidget::paintGround(QPainter& painter) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/edit/select.h"
+#include "ui/conversions.h"
 
 namespace tessera {
 
@@ -81,44 +82,79 @@ void CanvasWidget::setSession(DocumentSession* session) {
 }
 
 void CanvasWidget::reloadMesh() {
+    mDrafting = false;
     mMesh = mSession ? mSession->document().mesh : PatchMesh();
     mFrames.setMesh(mMesh);
-    mOverlay = OverlayPainter(mMesh);
-    mHighlightOutline.clear();
     mHeatMap = {};
-    outlineSelection();
+    remakeOverlay();
     requestFrame();
     update();
+    reportCursor();
+}
+
+void CanvasWidget::setDraft(const std::optional<PatchMesh>& draft) {
+    if (!mSession || (!draft && !mDrafting)) return;
+    if (mTools) mTools->cancel();
+    mDrafting = draft.has_value();
+    showMesh(draft ? *draft : mSession->document().mesh);
+    updateCursor();
+}
+
+void CanvasWidget::showMesh(const PatchMesh& mesh) {
+    // What is on the screen stays until the next frame is there.
+    Touched everything;
+    everything.topology = true;
+    if (mMesh.patchCount() > 0 && mesh.patchCount() > 0)
+        mFrames.updateMesh(mesh, everything);
+    else
+        mFrames.setMesh(mesh);
+    mMesh = mesh;
+    remakeOverlay();
+    requestFrame();
     reportCursor();
 }
 
 void CanvasWidget::follow(const Change& change) {
     if (change.photo) update();
     if (!change.mesh()) return;
-    if (change.replaced) return reloadMesh();
+    if (change.replaced || mDrafting) return reloadMesh();
     const PatchMesh& mesh = mSession->document().mesh;
     mFrames.updateMesh(mesh, change.touched);
     mMesh = mesh;
     if (change.touched.topology) {
-        mOverlay = OverlayPainter(mMesh);
-        mHighlightOutline.clear();
-        outlineSelection();
+        remakeOverlay();
     } else {
         std::vector<EdgeId> edges = change.touched.edges;
         for (const VertexId v : change.touched.vertices) appendEdgesAround(mMesh.connectivity(), v, edges);
+        if (mOverlay.measuresJumps())
+            for (const PatchId p : change.touched.patches)
+                for (const HalfedgeId h : mMesh.connectivity().sides(p))
+                    edges.push_back(HalfedgeMesh::edge(h));
         mOverlay.update(mMesh, edges);
     }
     update();
 }
 
+void CanvasWidget::remakeOverlay() {
+    mOverlay = OverlayPainter(mMesh);
+    mHighlightOutline.clear();
+    outlineSelection();
+    measureFeatures();
+}
+
+void CanvasWidget::measureFeatures() {
+    if (mOverlays.tint == FeatureTint::Importance && !mOverlay.measuresJumps()) mOverlay.measureJumps(mMesh);
+}
+
 void CanvasWidget::outlineSelection() {
-    mSelectionOutline = mSession && mSession->hasMesh() ? outlineEdges(mMesh, mSession->selection().patches())
-                                                        : std::vector<EdgeId>();
+    mSelectionOutline = mSession && mSession->hasMesh() && !mDrafting
+                            ? outlineEdges(mMesh, mSession->selection().patches())
+                            : std::vector<EdgeId>();
     update();
 }
 
 void CanvasWidget::setHighlight(const PatchSet& patches) {
-    mHighlightOutline = outlineEdges(mMesh, patches);
+    mHighlightOutline = mDrafting ? std::vector<EdgeId>() : outlineEdges(mMesh, patches);
     update();
 }
 
@@ -148,13 +184,20 @@ void CanvasWidget::setTheme(Theme theme) {
     update();
 }
 
+void CanvasWidget::setScreenColours(const QColorSpace& space) {
+    const QColorSpace pictures(QColorSpace::SRgb);
+    mToScreen.reset();
+    if (space.isValid() && space != pictures) mToScreen = pictures.transformationToColorSpace(space);
+    update();
+}
+
 QSizeF CanvasWidget::pictureSize() const {
     return mSession ? QSizeF(mSession->width(), mSession->height()) : QSizeF();
 }
 
 bool CanvasWidget::showsPhoto() const {
     if (!hasOriginal()) return false;
-    return !mSession->hasMesh() || mShowOriginal || mPeeking;
+    return mMesh.patchCount() == 0 || mShowOriginal || mPeeking;
 }
 
 void CanvasWidget::setShowOriginal(bool on) {
@@ -175,6 +218,7 @@ void CanvasWidget::setXRay(bool on) {
 
 void CanvasWidget::setOverlays(const OverlayOptions& options) {
     mOverlays = options;
+    measureFeatures();
     update();
 }
 
@@ -190,7 +234,8 @@ void CanvasWidget::zoomTo(double scale) {
 
 void CanvasWidget::fit() {
     ViewTransform view = mView;
-    view.fit(pictureSize(), deviceSize(), kFitMarginPx * devicePixelRatioF());
+    const double ratio = devicePixelRatioF();
+    view.fit(pictureSize(), deviceSize(), kFitMarginPx * ratio, ratio);
     zoomView(view);
     mFitted = true;
 }
@@ -225,17 +270,15 @@ QRectF CanvasWidget::visiblePart() const {
 void CanvasWidget::changeViewAsAsked(const ViewRequest& request) {
     if (const auto* pan = std::get_if<PanBy>(&request)) {
         ViewTransform view = mView;
-        view.panBy(QPointF(pan->offset.x, pan->offset.y) * mView.scale());
+        view.panBy(toPoint(pan->offset) * mView.scale());
         view.keepInView(pictureSize(), deviceSize());
         changeView(view);
     } else if (const auto* step = std::get_if<ZoomStep>(&request)) {
         ViewTransform view = mView;
-        view.setScaleAt(mView.toScreen(QPointF(step->at.x, step->at.y)),
-                        ViewTransform::nextScale(mView.scale(), step->in));
+        view.setScaleAt(mView.toScreen(toPoint(step->at)), ViewTransform::nextScale(mView.scale(), step->in));
         zoomView(view);
     } else {
-        const Rect& rect = std::get<ShowRect>(request).rect;
-        showRect(QRectF(QPointF(rect.min.x, rect.min.y), QPointF(rect.max.x, rect.max.y)).normalized());
+        showRect(toRect(std::get<ShowRect>(request).rect));
     }
 }
 
@@ -262,7 +305,7 @@ void CanvasWidget::changeView(const ViewTransform& view) {
 }
 
 void CanvasWidget::requestFrame() {
-    if (!mSession || !mSession->hasMesh()) return;
+    if (!mSession || mMesh.patchCount() == 0) return;
     // Only pixels that lie wholly within the picture: what is outside is black or clear, and would darken the
     // border.
     const QRectF part = mView.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect();
@@ -294,14 +337,17 @@ void CanvasWidget::updateCursor() {
     else if (mDraggingSplit || (mCursor && overSplitLine(*mCursor)))
         setCursor(Qt::SplitHCursor);
     else
-        setCursor(cursorOf(mTools && mSession ? mTools->cursor() : ToolCursor::Arrow));
+        setCursor(cursorOf(toolsInUse() ? mTools->cursor() : ToolCursor::Arrow));
 }
 
 void CanvasWidget::reportCursor() {
     std::optional<QPointF> image;
     if (mCursor && mSession) {
         const QPointF point = mView.toImage(*mCursor);
-        if (QRectF(QPointF(0, 0), pictureSize()).contains(point)) image = point;
+        // A point on the right or lower border is in no pixel.
+        const QSizeF size = pictureSize();
+        if (point.x() >= 0 && point.y() >= 0 && point.x() < size.width() && point.y() < size.height())
+            image = point;
     }
     emit cursorMoved(image, image ? shownColour(*image) : QColor());
 }

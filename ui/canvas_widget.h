@@ -2,6 +2,8 @@
 // into what tools understand.
 #pragma once
 
+#include <QColorSpace>
+#include <QColorTransform>
 #include <QElapsedTimer>
 #include <QWidget>
 #include <optional>
@@ -28,6 +30,9 @@ class CanvasWidget : public QWidget {
     // next call.
     void setSession(DocumentSession* session);
     void setTheme(Theme theme);
+    // That of the window's surface, into which pictures are converted; pictures are shown as they are, in
+    // sRGB, where it is not valid.
+    void setScreenColours(const QColorSpace& space);
     // Null: the CPU renderer.
     void setDrawer(std::unique_ptr<FrameDrawer> drawer) { mFrames.setDrawer(std::move(drawer)); }
     // Whose tools get what pointer and keys do here; outlives the canvas.
@@ -58,6 +63,9 @@ class CanvasWidget : public QWidget {
     void setXRay(bool on);
     // A picture of the size of the document's, painted over it; null for none.
     void setHeatMap(const QImage& map);
+    // Shows another mesh of the same picture in place of the document's, which tools leave alone meanwhile;
+    // none goes back to the document, and so does a change of it.
+    void setDraft(const std::optional<PatchMesh>& draft);
     // Patches that a panel points at.
     void setHighlight(const PatchSet& patches);
     // What is drawn of the whole picture, small; null before there is anything.
@@ -77,6 +85,9 @@ class CanvasWidget : public QWidget {
     // OpenGL has failed; the CPU renderer goes on.
     void drawerLost(const QString& reason);
     void contextMenuWanted(QPoint globalPosition);
+    // Escape, or a press where a tool would work, while a draft is shown.
+    void draftLeft();
+    void draftPressed();
 
   protected:
     void paintEvent(QPaintEvent* event) override;
@@ -99,7 +110,12 @@ class CanvasWidget : public QWidget {
     QSizeF pictureSize() const;
 
     void reloadMesh();
+    void showMesh(const PatchMesh& mesh);
+    // The tools, while there is something that they may work on.
+    ToolManager* toolsInUse() const { return mSession && !mDrafting ? mTools : nullptr; }
     void follow(const Change& change);
+    void remakeOverlay();
+    void measureFeatures();
     void outlineSelection();
     ToolEvent toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const;
     ToolKey toolKey(const QKeyEvent& event) const;
@@ -119,6 +135,8 @@ class CanvasWidget : public QWidget {
     QColor shownColour(QPointF image) const;
 
     void paintGround(QPainter& painter);
+    // In the colours of the screen.
+    void paintPictureManaged(QPainter& painter) const;
     void paintPicture(QPainter& painter) const;
     void paintPhoto(QPainter& painter) const;
     void paintSplit(QPainter& painter) const;
@@ -135,6 +153,7 @@ class CanvasWidget : public QWidget {
     OverlayPainter mOverlay;
     OverlayOptions mOverlays;
     CanvasColours mColours;
+    std::optional<QColorTransform> mToScreen;  // from sRGB, where the screen has other colours
     std::vector<EdgeId> mSelectionOutline;
     std::vector<EdgeId> mHighlightOutline;
     QImage mHeatMap;
@@ -143,6 +162,7 @@ class CanvasWidget : public QWidget {
     QElapsedTimer mSinceZoom;   // steps of a wheel in quick succession are one change of the zoom
     QSizeF mLaidOut;            // device size for which mView was made
     bool mFitted = true;        // the view follows the window until the user zooms or pans
+    bool mDrafting = false;     // mMesh is a draft
     bool mShowOriginal = false;
     bool mPeeking = false;  // O is held
     bool mSpace = false;    // Space is held

@@ -5,10 +5,9 @@
 #include <QFile>
 #include <QIconEngine>
 #include <QPainter>
-#include <memory>
+#include <QSvgRenderer>
 
 #include "core/base/check.h"
-#include "ui/svg_drawing.h"
 
 namespace tessera {
 
@@ -31,8 +30,7 @@ QColor colourOf(const QPalette& palette, QIcon::Mode mode, QIcon::State state) {
 
 class LineIconEngine : public QIconEngine {
   public:
-    LineIconEngine(std::shared_ptr<const SvgDrawing> drawing, const QPalette& palette)
-        : mDrawing(std::move(drawing)), mPalette(palette) {}
+    LineIconEngine(QByteArray svg, const QPalette& palette) : mSvg(std::move(svg)), mPalette(palette) {}
 
     QIconEngine* clone() const override { return new LineIconEngine(*this); }
 
@@ -40,7 +38,10 @@ class LineIconEngine : public QIconEngine {
         const int side = std::min(rect.width(), rect.height());
         QRectF square(0, 0, side, side);
         square.moveCenter(QRectF(rect).center());
-        mDrawing->paint(*painter, square, colourOf(mPalette, mode, state));
+        // Qt's reader knows no currentColor.
+        QByteArray tinted = mSvg;
+        tinted.replace("currentColor", colourOf(mPalette, mode, state).name().toLatin1());
+        QSvgRenderer(tinted).render(painter, square);
     }
 
     QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State state) override {
@@ -52,7 +53,7 @@ class LineIconEngine : public QIconEngine {
     }
 
   private:
-    std::shared_ptr<const SvgDrawing> mDrawing;
+    QByteArray mSvg;
     QPalette mPalette;
 };
 
@@ -61,9 +62,7 @@ class LineIconEngine : public QIconEngine {
 QIcon icon(const QString& name, const QPalette& palette) {
     QFile file(kFolder + '/' + name + kSuffix);
     TESSERA_CHECK(file.open(QIODevice::ReadOnly));
-    auto drawing = readSvgDrawing(file.readAll());
-    TESSERA_CHECK(drawing.has_value());
-    return QIcon(new LineIconEngine(std::make_shared<const SvgDrawing>(std::move(*drawing)), palette));
+    return QIcon(new LineIconEngine(file.readAll(), palette));
 }
 
 QStringList iconNames() {

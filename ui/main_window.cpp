@@ -7,9 +7,12 @@
 #include <QMenu>
 #include <QMessageBox>
 #include <QTabBar>
+#include <QWindow>
+#include <utility>
 
 #include "ui/action_table.h"
 #include "ui/canvas_widget.h"
+#include "ui/conversions.h"
 #include "ui/dialogs/cheat_sheet.h"
 #include "ui/dialogs/preferences_dialog.h"
 #include "ui/dialogs/recovery_dialog.h"
@@ -46,6 +49,7 @@ size_t featureCount(const PatchMesh& mesh) {
 MainWindow::MainWindow()
     : mSwatches(SwatchStore::defaultPath()),
       mActions(std::make_unique<ActionTable>(this, mSettings)),
+      mDrafts(mWorkspace),
       mAutosave(mWorkspace, mRecovery) {
     setAcceptDrops(true);
     setContextMenuPolicy(Qt::NoContextMenu);
@@ -57,7 +61,7 @@ MainWindow::MainWindow()
     connectPanels();
     chooseRenderer();
     restoreWindow();
-    applySettings();
+    applyBehaviour();
     showSession();
     mCanvas->setFocus();
 }
@@ -67,6 +71,7 @@ MainWindow::~MainWindow() {
     mWorkspace.disconnect(this);
     mTools.setSession(nullptr);
     mHeatMap.setSession(nullptr);
+    mDrafts.setSession(nullptr);
     mCanvas->setSession(nullptr);
 }
 
@@ -107,9 +112,17 @@ void MainWindow::connectViewActions() {
     on(ActionId::FitSelection, [this] { fitSelection(); });
     on(ActionId::PreviousZoom, [this] { mCanvas->previousZoom(); });
     on(ActionId::OutlineView, [this] { cycleOutlineView(); });
-    for (const ActionId id :
-         {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowBlur})
+    for (const ActionId id : {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints,
+                              ActionId::ShowCentres, ActionId::ShowBlur, ActionId::ShowImportance})
         onToggled(id, [this] { updateOverlays(); });
+    // A feature has one colour at a time.
+    const auto excludes = [&](ActionId id, ActionId other) {
+        onToggled(id, [action = a[other]](bool shown) {
+            if (shown) action->setChecked(false);
+        });
+    };
+    excludes(ActionId::ShowBlur, ActionId::ShowImportance);
+    excludes(ActionId::ShowImportance, ActionId::ShowBlur);
     onToggled(ActionId::ShowHeatMap, [this](bool shown) { mHeatMap.setWanted(shown); });
     onToggled(ActionId::ShowOriginal, [this](bool shown) { mCanvas->setShowOriginal(shown); });
     onToggled(ActionId::Split, [this](bool split) { mCanvas->setSplit(split); });
@@ -133,16 +146,8 @@ void MainWindow::connectWorkspace() {
     connect(&mWorkspace, &Workspace::sessionChanged, this, &MainWindow::adoptSession);
     for (const auto signal : {&Workspace::sessionAdded, &Workspace::sessionClosed, &Workspace::saved})
         connect(&mWorkspace, signal, this, &MainWindow::showTabs, Qt::QueuedConnection);
-    connect(&mWorkspace, &Workspace::sessionAdded, this, [this](DocumentSession* session) {
-        connect(session, &DocumentSession::changed, this, [this, session](const Change& change) {
-            if (change.preview) return;
-            showTabs();
-            if (session == mWorkspace.session()) showSession();
-        });
-        connect(session, &DocumentSession::editingChanged, this, &MainWindow::updateActions);
-        connect(&session->history(), &History::changed, this, &MainWindow::updateActions);
-        connect(&session->selection(), &Selection::changed, this, &MainWindow::updateSelectionActions);
-    });
+    connect(&mWorkspace, &Workspace::sessionAdded, this,
+            [this](DocumentSession* session) { welcome(*session); });
     connect(&mWorkspace, &Workspace::said, mMessages, &MessageBar::show);
     connect(&mWorkspace, &Workspace::fileUsed, this, [this](const QString& path) {
         mSettings.addRecentFile(path);
@@ -151,6 +156,8 @@ void MainWindow::connectWorkspace() {
     });
     connect(&mWorkspace, &Workspace::jobChanged, this, [this] {
         mStatus->showJob(mWorkspace.currentJob());
+        // The file that it was wished for could not be opened.
+        if (!mWorkspace.running(JobKind::Open)) mVectorizeWhenOpen = false;
         updateActions();
     });
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
@@ -194,6 +201,12 @@ void MainWindow::chooseRenderer() {
 
 void MainWindow::connectPanels() {
     connect(mPanel, &VectorizePanel::editingDone, this, [this] { mCanvas->setFocus(); });
+    connect(mPanel, &VectorizePanel::draftWanted, this,
+            [this] { mDrafts.want(mPanel->settings(mWorkspace.session())); });
+    connect(mPanel, &VectorizePanel::draftDropped, &mDrafts, &DraftPreview::drop);
+    connect(mCanvas, &CanvasWidget::draftLeft, &mDrafts, &DraftPreview::drop);
+    connect(mCanvas, &CanvasWidget::draftPressed, this, &MainWindow::explainDraft);
+    connect(&mDrafts, &DraftPreview::changed, this, &MainWindow::showDraft);
     mRecolour->setToolOptions(mTools);
     mPalette->setToolOptions(mTools);
     mSelection->setToolOptions(mTools);
@@ -231,16 +244,25 @@ void MainWindow::adoptSession() {
     mPalette->setSession(session);
     mSelection->setSession(session);
     mHistory->setSession(session);
+    mDrafts.setSession(session);
     mNavigator->setPicture(mCanvas->overviewImage());
     if (session && session->hasMesh()) mPanel->showSettings(session->document().settings);
     showTabs();
     showSession();
     mCanvas->setFocus();
-    if (!session) return;
-    const bool vectorize = !session->hasMesh() && session->revision() == 1 &&
-                           (mVectorizeWhenOpen || mSettings.vectorizeOnOpen());
-    mVectorizeWhenOpen = false;
-    if (vectorize) startVectorize();
+}
+
+void MainWindow::welcome(DocumentSession& session) {
+    connect(&session, &DocumentSession::changed, this, [this, &session](const Change& change) {
+        if (change.preview) return;
+        showTabs();
+        if (&session == mWorkspace.session()) showSession();
+    });
+    connect(&session, &DocumentSession::editingChanged, this, &MainWindow::updateActions);
+    connect(&session.history(), &History::changed, this, &MainWindow::updateActions);
+    connect(&session.selection(), &Selection::changed, this, &MainWindow::updateSelectionActions);
+    const bool wanted = std::exchange(mVectorizeWhenOpen, false) || mSettings.vectorizeOnOpen();
+    if (wanted && !session.hasMesh()) startVectorize();
 }
 
 void MainWindow::showSession() {
@@ -270,10 +292,10 @@ void MainWindow::showTabs() {
 
 void MainWindow::showView() {
     const double scale = mCanvas->view().scale();
-    mStatus->showZoom(scale);
     mTopRuler->setView(mCanvas->view());
     mLeftRuler->setView(mCanvas->view());
     const DocumentSession* session = mWorkspace.session();
+    mStatus->showZoom(session ? std::optional(scale) : std::nullopt);
     mNavigator->setScale(scale);
     mNavigator->setVisibleRect(mCanvas->visiblePart(),
                                session ? QSizeF(session->width(), session->height()) : QSizeF());
@@ -295,8 +317,9 @@ void MainWindow::updateActions() {
     enable({ActionId::Close, ActionId::ZoomIn, ActionId::ZoomOut, ActionId::ZoomFit, ActionId::Zoom100,
             ActionId::PreviousZoom},
            session);
-    enable({ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowBlur,
-            ActionId::OutlineView, ActionId::Copy, ActionId::Relink},
+    enable({ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowCentres,
+            ActionId::ShowBlur, ActionId::ShowImportance, ActionId::OutlineView, ActionId::Copy,
+            ActionId::Relink},
            hasMesh);
     enable({ActionId::ShowOriginal, ActionId::Split, ActionId::XRay, ActionId::ShowHeatMap},
            hasMesh && hasPhoto);
@@ -320,14 +343,17 @@ void MainWindow::updateSelectionActions() {
 
 void MainWindow::updateOverlays() {
     const ActionTable& a = *mActions;
-    const bool byBlur = a[ActionId::ShowBlur]->isChecked();
+    const FeatureTint tint = a[ActionId::ShowBlur]->isChecked()         ? FeatureTint::Blur
+                             : a[ActionId::ShowImportance]->isChecked() ? FeatureTint::Importance
+                                                                        : FeatureTint::Plain;
     // What can be taken hold of is seen.
     const bool shaping = mTools.tool() == ToolId::Direct;
-    mCanvas->setOverlays({.features = byBlur || a[ActionId::ShowFeatures]->isChecked(),
-                          .featuresByBlur = byBlur,
+    mCanvas->setOverlays({.features = tint != FeatureTint::Plain || a[ActionId::ShowFeatures]->isChecked(),
+                          .tint = tint,
                           .edges = shaping || a[ActionId::ShowEdges]->isChecked(),
                           .vertices = shaping,
-                          .controlPoints = a[ActionId::ShowControlPoints]->isChecked()});
+                          .controlPoints = a[ActionId::ShowControlPoints]->isChecked(),
+                          .centres = a[ActionId::ShowCentres]->isChecked()});
 }
 
 void MainWindow::cycleOutlineView() {
@@ -347,16 +373,27 @@ void MainWindow::updateTitle() {
 void MainWindow::startVectorize() {
     mMessages->hide();
     mCanvas->setFocus();
-    mWorkspace.vectorize(mPanel->settings(mWorkspace.session()));
+    mWorkspace.vectorize(mPanel->settings(mWorkspace.session()), mPanel->meanError());
+}
+
+void MainWindow::showDraft() {
+    const auto& draft = mDrafts.mesh();
+    mCanvas->setDraft(draft);
+    if (!draft) mMessages->hide();
+    mPanel->showDraft(draft ? std::optional(draft->patchCount()) : std::nullopt);
+}
+
+void MainWindow::explainDraft() {
+    mMessages->show({.text = tr("This is a draft: apply it to edit it, or press Escape to go back."),
+                     .actionText = tr("Apply"),
+                     .action = [this] { startVectorize(); }});
 }
 
 void MainWindow::fitSelection() {
     const DocumentSession& session = *mWorkspace.session();
     const PatchMesh& mesh = session.document().mesh;
     QRectF area;
-    const auto include = [&](const Rect& box) {
-        area |= QRectF(QPointF(box.min.x, box.min.y), QPointF(box.max.x, box.max.y));
-    };
+    const auto include = [&](const Rect& box) { area |= toRect(box); };
     for (const PatchId p : session.selection().patches()) include(controlBounds(mesh, p));
     for (const EdgeId e : session.selection().curves())
         for (const HalfedgeId h : {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))})
@@ -391,8 +428,12 @@ void MainWindow::say(const QString& text) {
 
 void MainWindow::applySettings() {
     applyTheme(*qApp, mSettings.theme());
-    mCanvas->setTheme(mSettings.theme());
     mActions->applyKeys(mSettings);
+    applyBehaviour();
+}
+
+void MainWindow::applyBehaviour() {
+    mCanvas->setTheme(mSettings.theme());
     mAutosave.setInterval(mSettings.autosaveSeconds());
     mWorkspace.setHistoryLimit(mSettings.historyBytes());
     Job::setThreadLimit(mSettings.threads());
@@ -402,6 +443,12 @@ void MainWindow::changeEvent(QEvent* event) {
     if (event->type() == QEvent::PaletteChange && mActions) mActions->tintIcons(palette());
     if (event->type() == QEvent::ActivationChange && !isActiveWindow()) mTools.cancel();
     QMainWindow::changeEvent(event);
+}
+
+void MainWindow::showEvent(QShowEvent* event) {
+    QMainWindow::showEvent(event);
+    // Known from now on. Qt gives it on platforms that manage colours by surface, and else none.
+    mCanvas->setScreenColours(windowHandle()->format().colorSpace());
 }
 
 void MainWindow::showPreferences() {

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "app/autosave.h"
+#include "app/draft_preview.h"
 #include "app/heat_map.h"
 #include "app/settings.h"
 #include "app/swatch_store.h"
@@ -44,7 +45,7 @@ class MainWindow : public QMainWindow {
     // Vectorizes with the panel's settings, now or as soon as the file that is being opened is there.
     void vectorizeWhenOpen();
     // Saves to `path`, a .tessera file, without asking.
-    void saveTo(const QString& path, std::function<void()> then = {});
+    void saveTo(const QString& path);
     // Offers the documents that a run before this one could not save, if there are any.
     void offerRecovery();
 
@@ -62,6 +63,7 @@ class MainWindow : public QMainWindow {
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
     void changeEvent(QEvent* event) override;
+    void showEvent(QShowEvent* event) override;
 
   private:
     // main_window_layout.cpp
@@ -81,6 +83,7 @@ class MainWindow : public QMainWindow {
     void connectPanels();
     void chooseRenderer();
     void adoptSession();
+    void welcome(DocumentSession& session);
     void showSession();
     void showTabs();
     void updateActions();
@@ -90,11 +93,15 @@ class MainWindow : public QMainWindow {
     void updateTitle();
     void showView();
     void startVectorize();
+    void showDraft();
+    void explainDraft();
     void fitSelection();
     void changeBrush(double factor);
     void showContextMenu(QPoint at);
     void say(const QString& text);
+    // What the preferences have written; applyBehaviour() is the part of it that start-up needs.
     void applySettings();
+    void applyBehaviour();
     void showPreferences();
     void showCheatSheet();
     void showAbout();
@@ -103,8 +110,8 @@ class MainWindow : public QMainWindow {
     void chooseAndOpen();
     void paste();
     void copy();
-    void save(std::function<void()> then = {});
-    void chooseAndSave(std::function<void()> then = {});
+    void save();
+    void chooseAndSave();
     // A .tessera path; empty where the user chooses none.
     QString askForPath(const DocumentSession& session);
     void chooseAndExport();
@@ -143,6 +150,7 @@ class MainWindow : public QMainWindow {
     bool mClosing = false;
     RecoveryStore mRecovery;
     Workspace mWorkspace;  // after all that its jobs report to: it goes before them
+    DraftPreview mDrafts;
     Autosave mAutosave;
 };
 

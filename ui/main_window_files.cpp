@@ -51,22 +51,21 @@ void MainWindow::chooseAndOpen() {
     if (!path.isEmpty()) open(path);
 }
 
-void MainWindow::saveTo(const QString& path, std::function<void()> then) {
-    mWorkspace.save(path, mSettings.embedPhoto(), std::move(then));
+void MainWindow::saveTo(const QString& path) {
+    mWorkspace.save(path, mSettings.embedPhoto());
 }
 
-void MainWindow::save(std::function<void()> then) {
+void MainWindow::save() {
     const DocumentSession* session = mWorkspace.session();
     if (!session || !session->hasMesh()) return;
-    if (session->path().isEmpty()) return chooseAndSave(std::move(then));
-    saveTo(session->path(), std::move(then));
+    session->path().isEmpty() ? chooseAndSave() : saveTo(session->path());
 }
 
-void MainWindow::chooseAndSave(std::function<void()> then) {
+void MainWindow::chooseAndSave() {
     const DocumentSession* session = mWorkspace.session();
     if (!session || !session->hasMesh()) return;
     const QString path = askForPath(*session);
-    if (!path.isEmpty()) saveTo(path, std::move(then));
+    if (!path.isEmpty()) saveTo(path);
 }
 
 QString MainWindow::askForPath(const DocumentSession& session) {

@@ -4,6 +4,7 @@
 #include <QMenuBar>
 #include <QScreen>
 #include <QScrollArea>
+#include <QScrollBar>
 #include <QStackedLayout>
 #include <QTabBar>
 
@@ -27,11 +28,15 @@ namespace tessera {
 namespace {
 
 constexpr QSize kFirstSize(1440, 900);
+// What the panels need at least.
+constexpr int kPanelWidthPx = 290;
 // Of what saveState() keeps: another number where docks have come or gone.
 constexpr int kStateVersion = 2;
 
-const std::array kRememberedToggles{ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints,
-                                    ActionId::ShowBlur, ActionId::Rulers};
+const std::array kRememberedToggles{
+    ActionId::ShowFeatures, ActionId::ShowEdges,      ActionId::ShowControlPoints,
+    ActionId::ShowBlur,     ActionId::ShowImportance, ActionId::ShowCentres,
+    ActionId::Rulers};
 
 }  // namespace
 
@@ -52,12 +57,13 @@ QWidget* MainWindow::makeCentre() {
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setSpacing(0);
     grid->addWidget(mTabs = new QTabBar, 0, 0, 1, 2);
-    grid->addWidget(mMessages = new MessageBar, 1, 0, 1, 2);
-    grid->addWidget(mCorner = new QWidget, 2, 0);
-    grid->addWidget(mTopRuler = new Ruler(Qt::Horizontal), 2, 1);
-    grid->addWidget(mLeftRuler = new Ruler(Qt::Vertical), 3, 0);
-    grid->addWidget(mCanvas = new CanvasWidget, 3, 1);
-    grid->setRowStretch(3, 1);
+    grid->addWidget(mCorner = new QWidget, 1, 0);
+    grid->addWidget(mTopRuler = new Ruler(Qt::Horizontal), 1, 1);
+    grid->addWidget(mLeftRuler = new Ruler(Qt::Vertical), 2, 0);
+    grid->addWidget(mCanvas = new CanvasWidget, 2, 1);
+    // Over the canvas, so that the picture stays where it is when one has something to say.
+    grid->addWidget(mMessages = new MessageBar, 2, 1, Qt::AlignTop);
+    grid->setRowStretch(2, 1);
     grid->setColumnStretch(1, 1);
     mTabs->setObjectName("documents");
     mTabs->setTabsClosable(true);
@@ -97,12 +103,14 @@ QDockWidget* MainWindow::addDock(const QString& name, const QString& title, QWid
     dock->setFeatures(QDockWidget::DockWidgetMovable);
     // The tab says the name.
     dock->setTitleBarWidget(new QWidget);
+    content->setMinimumWidth(kPanelWidthPx);
     if (scrolls) {
         auto* area = new QScrollArea;
         area->setWidgetResizable(true);
         area->setFrameShape(QFrame::NoFrame);
         area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         area->setWidget(content);
+        area->setMinimumWidth(kPanelWidthPx + area->verticalScrollBar()->sizeHint().width());
         dock->setWidget(area);
     } else {
         dock->setWidget(content);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/conversions.h"
+
 namespace tessera {
 
 namespace {
@@ -34,23 +36,57 @@ constexpr double kMaxSegments = 64;
 // there are many lines, they are short and nobody sees notches.
 constexpr size_t kMaxRoundCaps = 4000;
 
-// Softness of features, from crisp to soft.
-struct BlurClass {
-    float fromPx;
+// Features from one value of what their tint is about to the next; so many classes for each tint.
+struct FeatureClass {
+    float from;
     QColor colour;
 };
-const std::array kBlurClasses{BlurClass{0, QColor(255, 214, 92)}, BlurClass{.6F, QColor(255, 150, 110)},
-                              BlurClass{1.2F, QColor(230, 120, 220)}, BlurClass{2.4F, QColor(120, 170, 255)}};
+constexpr size_t kFeatureClasses = 4;
+using FeatureScale = std::array<FeatureClass, kFeatureClasses>;
+const QColor kCrisp(255, 214, 92), kWarm(255, 150, 110), kCool(230, 120, 220), kSoft(120, 170, 255);
+// In px of blur, from crisp to soft, and in levels of jump, from faint to strong.
+const FeatureScale kBlurScale{{{0, kCrisp}, {.6F, kWarm}, {1.2F, kCool}, {2.4F, kSoft}}};
+const FeatureScale kJumpScale{{{0, kSoft}, {16 / 255.F, kCool}, {40 / 255.F, kWarm}, {90 / 255.F, kCrisp}}};
 
-size_t blurClass(float blurPx) {
+size_t classOf(const FeatureScale& scale, float value) {
     size_t found = 0;
-    for (size_t i = 1; i < kBlurClasses.size(); ++i)
-        if (blurPx >= kBlurClasses[i].fromPx) found = i;
+    for (size_t i = 1; i < scale.size(); ++i)
+        if (value >= scale[i].from) found = i;
     return found;
 }
 
-QPointF toPoint(glm::dvec2 p) {
-    return {p.x, p.y};
+// The distance in RGB of the colours on both sides, the mean of a few points along the edge. (The opponent
+// basis is orthonormal: distances are the same in it.)
+float jumpAcross(const PatchMesh& mesh, EdgeId edge) {
+    constexpr size_t kPoints = 3;
+    const HalfedgeMesh& connectivity = mesh.connectivity();
+    std::array<std::array<std::array<float, kPoints>, kMaxChannels>, 2> colours{};
+    for (const size_t side : {0, 1}) {
+        const HalfedgeId forward = HalfedgeMesh::halfedge(edge);
+        const HalfedgeId h = side == 0 ? forward : HalfedgeMesh::twin(forward);
+        const PatchId p = connectivity.face(h);
+        if (!p.valid()) return 0;
+        const auto sides = connectivity.sides(p);
+        const auto corner = int(std::find(sides.begin(), sides.end(), h) - sides.begin());
+        std::array<float, kPoints> x{}, y{};
+        for (size_t i = 0; i < kPoints; ++i) {
+            const double along = double(i + 1) / (kPoints + 1), t = side == 0 ? along : 1 - along;
+            Barycentric at(0);
+            at[corner] = 1 - t;
+            at[(corner + 1) % 3] = t;
+            const glm::dvec2 place = domainPoint(at);
+            x[i] = float(place.x);
+            y[i] = float(place.y);
+        }
+        std::array<float*, kMaxChannels> planes{};
+        for (size_t c = 0; c < kMaxChannels; ++c) planes[c] = colours[side][c].data();
+        evaluateSplines(mesh.spline(p), mesh.channels(), x.data(), y.data(), kPoints, planes.data());
+    }
+    float sum = 0;
+    for (size_t i = 0; i < kPoints; ++i)
+        sum += std::hypot(colours[0][0][i] - colours[1][0][i], colours[0][1][i] - colours[1][1][i],
+                          colours[0][2][i] - colours[1][2][i]);
+    return sum / kPoints;
 }
 
 double length(QPointF p) {
@@ -136,19 +172,21 @@ OverlayPainter::Curve OverlayPainter::curveOf(const PatchMesh& mesh, EdgeId edge
 }
 
 OverlayPainter::OverlayPainter(const PatchMesh& mesh) : mCurves(mesh.connectivity().edgeCapacity()) {
-    mesh.forEachEdge([&](EdgeId e) {
-        mCurves[e.index] = curveOf(mesh, e);
-        mFeatureCount += mCurves[e.index].feature ? 1 : 0;
-    });
+    mesh.forEachEdge([&](EdgeId e) { mCurves[e.index] = curveOf(mesh, e); });
 }
 
 void OverlayPainter::update(const PatchMesh& mesh, std::span<const EdgeId> edges) {
     for (const EdgeId e : edges) {
-        Curve& curve = mCurves[e.index];
-        mFeatureCount -= curve.feature ? 1 : 0;
-        curve = curveOf(mesh, e);
-        mFeatureCount += curve.feature ? 1 : 0;
+        Curve& curve = mCurves[e.index] = curveOf(mesh, e);
+        if (mMeasuresJumps && curve.feature) curve.jump = jumpAcross(mesh, e);
     }
+}
+
+void OverlayPainter::measureJumps(const PatchMesh& mesh) {
+    mMeasuresJumps = true;
+    mesh.forEachEdge([&](EdgeId e) {
+        if (mCurves[e.index].feature) mCurves[e.index].jump = jumpAcross(mesh, e);
+    });
 }
 
 std::vector<OverlayPainter::Shown> OverlayPainter::shown(const ViewTransform& view,
@@ -166,7 +204,11 @@ void OverlayPainter::appendShown(std::vector<Shown>& result, const Curve& curve,
     if (curve.box.left() > window.right() || curve.box.right() < window.left() ||
         curve.box.top() > window.bottom() || curve.box.bottom() < window.top())
         return;
-    Shown shown{.p = {}, .feature = curve.feature, .straight = curve.straight, .blurPx = curve.blurPx};
+    Shown shown{.p = {},
+                .feature = curve.feature,
+                .straight = curve.straight,
+                .blurPx = curve.blurPx,
+                .jump = curve.jump};
     for (size_t i = 0; i < 4; ++i) shown.p[i] = view.toScreen(curve.p[i]);
     shown.sizePx = length(shown.p[3] - shown.p[0]);
     result.push_back(shown);
@@ -206,13 +248,23 @@ void OverlayPainter::paintOutline(QPainter& painter, const ViewTransform& view, 
 void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
                                  double pixelRatio, const OverlayOptions& options) {
     std::vector<QLineF> plain;
-    std::array<std::vector<QLineF>, kBlurClasses.size()> features;
+    std::array<std::vector<QLineF>, kFeatureClasses> features;
+    const auto classOfFeature = [&](const Shown& edge) {
+        switch (options.tint) {
+            case FeatureTint::Blur:
+                return classOf(kBlurScale, edge.blurPx);
+            case FeatureTint::Importance:
+                return classOf(kJumpScale, edge.jump);
+            case FeatureTint::Plain:
+                break;
+        }
+        return size_t(0);
+    };
     std::vector<double> sizes;
     for (const Shown& edge : edges) {
         sizes.push_back(edge.sizePx / pixelRatio);
         if (edge.feature && options.features)
-            appendCurve(features[options.featuresByBlur ? blurClass(edge.blurPx) : 0], edge, clip,
-                        pixelRatio);
+            appendCurve(features[classOfFeature(edge)], edge, clip, pixelRatio);
         else if (options.edges)
             appendCurve(plain, edge, clip, pixelRatio);
     }
@@ -220,9 +272,10 @@ void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& ed
     std::nth_element(sizes.begin(), median, sizes.end());
     const bool near = *median >= kNearFromPx;
     drawTwoTone(painter, plain, near ? kEdgeNear : kEdgeFar, pixelRatio, *median >= kHaloFromPx);
+    const FeatureScale& scale = options.tint == FeatureTint::Importance ? kJumpScale : kBlurScale;
     for (size_t i = 0; i < features.size(); ++i) {
         LineStyle style = near ? kFeatureNear : kFeatureFar;
-        style.core = kBlurClasses[i].colour;
+        style.core = scale[i].colour;
         drawTwoTone(painter, features[i], style, pixelRatio, true);
     }
 }

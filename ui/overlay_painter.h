@@ -12,13 +12,18 @@
 
 namespace tessera {
 
+// What the colour of a feature says: nothing, how soft it is, or how far colours jump across it.
+enum class FeatureTint { Plain, Blur, Importance };
+
 struct OverlayOptions {
     bool features = false;
-    bool featuresByBlur = false;  // in the colour of their softness
+    FeatureTint tint = FeatureTint::Plain;
     bool edges = false;
     bool vertices = false;
     bool controlPoints = false;  // vertices and handles
+    bool centres = false;        // of the splines; see centres_painter.h
 
+    // Whether there is anything for the painter of the curves.
     bool any() const { return features || edges || vertices || controlPoints; }
     bool operator==(const OverlayOptions&) const = default;
 };
@@ -40,6 +45,10 @@ class OverlayPainter {
 
     // Takes over these curves of a mesh of the same connectivity.
     void update(const PatchMesh& mesh, std::span<const EdgeId> edges);
+    // Looks at the jumps of colour too, as FeatureTint::Importance needs, from now on; `mesh` is the present
+    // one.
+    void measureJumps(const PatchMesh& mesh);
+    bool measuresJumps() const { return mMeasuresJumps; }
 
     // Paints in device pixels: the painter's transform takes them as they are. `pixelRatio` is how many of
     // them a line of "one pixel" is wide; `visible` is the part of the screen to paint.
@@ -50,8 +59,6 @@ class OverlayPainter {
     void paintOutline(QPainter& painter, const ViewTransform& view, const QRectF& visible, double pixelRatio,
                       std::span<const EdgeId> edges, const LineStyle& style) const;
 
-    size_t featureCount() const { return mFeatureCount; }
-
   private:
     // One edge's cubic, in image pixels.
     struct Curve {
@@ -61,6 +68,7 @@ class OverlayPainter {
         bool feature = false;
         bool straight = false;
         float blurPx = 0;  // mean of both ends
+        float jump = 0;    // of colour across a feature, as a distance in RGB, 0..1; where it is measured
     };
     // An edge in view, on the screen.
     struct Shown {
@@ -68,6 +76,7 @@ class OverlayPainter {
         bool feature = false;
         bool straight = false;
         float blurPx = 0;
+        float jump = 0;
         double sizePx = 0;
     };
 
@@ -84,7 +93,7 @@ class OverlayPainter {
                             double pixelRatio);
 
     std::vector<Curve> mCurves;  // by edge id
-    size_t mFeatureCount = 0;
+    bool mMeasuresJumps = false;
 };
 
 }  // namespace tessera

@@ -18,9 +18,9 @@
 #include <QtConcurrent>
 #include <algorithm>
 
-#include "ui/dialogs/dialog_parts.h"
 #include "ui/icons.h"
 #include "ui/thumbnail.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 

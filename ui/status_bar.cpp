@@ -4,8 +4,10 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLocale>
+#include <QPainter>
 #include <QProgressBar>
 #include <QPushButton>
+#include <algorithm>
 #include <cmath>
 
 #include "app/document_session.h"
@@ -17,6 +19,22 @@ namespace {
 
 constexpr int kProgressSteps = 1000;
 constexpr int kHeightPx = 32;
+constexpr int kLeastTextPx = 60;
+
+// One line that is cut where there is no room for it: a job with a long name must not widen the window.
+class ElidedLabel : public QLabel {
+  public:
+    QSize minimumSizeHint() const override {
+        return {std::min(kLeastTextPx, sizeHint().width()), QLabel::minimumSizeHint().height()};
+    }
+
+  protected:
+    void paintEvent(QPaintEvent*) override {
+        QPainter painter(this);
+        painter.drawText(rect(), Qt::AlignLeft | Qt::AlignVCenter,
+                         fontMetrics().elidedText(text(), Qt::ElideRight, width()));
+    }
+};
 
 // A label as wide as the longest text that it will show, so that the line does not shiver while the mouse
 // moves.
@@ -47,7 +65,7 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     auto* jobLayout = new QHBoxLayout(mJob);
     jobLayout->setContentsMargins(12, 3, 0, 3);
     jobLayout->setSpacing(10);
-    mJobText = new QLabel;
+    mJobText = new ElidedLabel;
     mProgress = new QProgressBar;
     mProgress->setRange(0, kProgressSteps);
     mProgress->setTextVisible(false);
@@ -58,8 +76,7 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     mCancel->setObjectName("cancelJob");
     jobLayout->addWidget(mProgress);
     jobLayout->addWidget(mCancel);
-    jobLayout->addWidget(mJobText);
-    jobLayout->addStretch(1);
+    jobLayout->addWidget(mJobText, 1);
     addWidget(mJob, 1);
     mJob->hide();
     connect(mCancel, &QPushButton::clicked, this, &StatusBar::cancelRequested);
@@ -67,7 +84,7 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     mSelected = new QLabel;
     mRenderer = new QLabel;
     mRenderer->setProperty("role", "dim");
-    mCounts = new QLabel;
+    mCounts = new ElidedLabel;
     mCursor = fixedLabel("00000, 00000", Qt::AlignRight);
     mSwatch = new QLabel;
     mSwatch->setFixedSize(16, 16);
@@ -113,8 +130,9 @@ void StatusBar::showSelection(size_t patches) {
     mSelected->setText(patches == 0 ? QString() : tr("%1 selected  ·").arg(countText(patches)));
 }
 
-void StatusBar::showZoom(double scale) {
-    mZoom->setText(zoomText(scale));
+void StatusBar::showZoom(std::optional<double> scale) {
+    mZoom->setEnabled(scale.has_value());
+    mZoom->setText(scale ? zoomText(*scale) : QString());
 }
 
 void StatusBar::showCursor(std::optional<QPointF> image, QColor colour) {

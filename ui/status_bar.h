@@ -24,7 +24,8 @@ class StatusBar : public QStatusBar {
 
     // Null: nothing runs.
     void showJob(const Job* job);
-    void showZoom(double scale);
+    // None without a document.
+    void showZoom(std::optional<double> scale);
     // Image pixels and the colour shown there; none outside the picture.
     void showCursor(std::optional<QPointF> image, QColor colour);
     void showCounts(const DocumentSession* session, size_t features);

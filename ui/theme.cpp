@@ -2,8 +2,10 @@
 #include "ui/theme.h"
 
 #include <QApplication>
+#include <QPainter>
 #include <QPalette>
-#include <QStyleFactory>
+#include <QProxyStyle>
+#include <QStyleOption>
 
 namespace tessera {
 
@@ -14,9 +16,9 @@ struct Greys {
 };
 
 const Greys kDark{"#2d2d2d", "#232323", "#3a3a3a", "#353535", "#1d1d1d",
-                  "#dedede", "#8f8f8f", "#3d8bd9", "#ffffff"};
+                  "#dedede", "#9d9d9d", "#3d8bd9", "#ffffff"};
 const Greys kLight{"#ececec", "#ffffff", "#f7f7f7", "#f4f4f4", "#c4c4c4",
-                   "#1f1f1f", "#7a7a7a", "#1f6fc0", "#ffffff"};
+                   "#1f1f1f", "#686868", "#1f6fc0", "#ffffff"};
 
 QPalette paletteOf(const Greys& g) {
     QPalette palette;
@@ -45,7 +47,7 @@ QPalette paletteOf(const Greys& g) {
     return palette;
 }
 
-// %1 line, %2 text, %3 dim, %4 accent, %5 accent text, %6 raised, %7 button, %8 window
+// %1 line, %2 text, %3 dim, %4 accent, %5 accent text, %6 raised, %7 button, %8 window, %9 handle
 const char* const kSheet = R"(
     QMainWindow::separator { background: %1; width: 1px; height: 1px; }
     QMenuBar { border-bottom: 1px solid %1; padding: 2px 4px; }
@@ -60,6 +62,14 @@ const char* const kSheet = R"(
     QToolTip { color: %2; background: %6; border: 1px solid %1; padding: 4px 6px; }
     QLabel[role="heading"] { color: %3; font-weight: bold; }
     QLabel[role="dim"] { color: %3; }
+    QScrollBar:vertical { background: %8; width: 10px; margin: 0; }
+    QScrollBar:horizontal { background: %8; height: 10px; margin: 0; }
+    QScrollBar::handle { background: %9; border-radius: 3px; margin: 2px; }
+    QScrollBar::handle:vertical { min-height: 28px; }
+    QScrollBar::handle:horizontal { min-width: 28px; }
+    QScrollBar::handle:hover { background: %3; }
+    QScrollBar::add-line, QScrollBar::sub-line { width: 0; height: 0; }
+    QScrollBar::add-page, QScrollBar::sub-page { background: none; }
     QPushButton { padding: 6px 14px; border: 1px solid %1; border-radius: 4px; background: %7; }
     QPushButton:hover { border-color: %4; }
     QPushButton:focus { border-color: %4; }
@@ -72,6 +82,36 @@ const char* const kSheet = R"(
     QProgressBar::chunk { border-radius: 3px; background: %4; }
     QFrame[role="line"] { background: %1; border: none; max-height: 1px; min-height: 1px; }
 )";
+
+// Fusion without the shadows under disabled text, without pictures in dialogs' buttons, and with crosses in
+// the theme's colours to close tabs by.
+class QuietStyle : public QProxyStyle {
+  public:
+    QuietStyle() : QProxyStyle("Fusion") {}
+
+    int styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget,
+                  QStyleHintReturn* data) const override {
+        if (hint == SH_EtchDisabledText || hint == SH_DialogButtonBox_ButtonsHaveIcons) return 0;
+        return QProxyStyle::styleHint(hint, option, widget, data);
+    }
+
+    void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
+                       const QWidget* widget) const override {
+        if (element != PE_IndicatorTabClose)
+            return QProxyStyle::drawPrimitive(element, option, painter, widget);
+        constexpr double kReachPx = 3.5;
+        const bool hovered = option->state.testFlag(State_MouseOver);
+        const QPointF centre = QRectF(option->rect).center();
+        painter->save();
+        painter->setRenderHint(QPainter::Antialiasing);
+        painter->setPen(
+            QPen(option->palette.color(hovered ? QPalette::WindowText : QPalette::PlaceholderText), 1.4,
+                 Qt::SolidLine, Qt::RoundCap));
+        for (const double side : {-1., 1.})
+            painter->drawLine(centre + kReachPx * QPointF(-1, side), centre + kReachPx * QPointF(1, -side));
+        painter->restore();
+    }
+};
 
 }  // namespace
 
@@ -91,15 +131,19 @@ CanvasColours canvasColours(Theme theme) {
 void applyTheme(QApplication& application, Theme theme) {
     const bool light = shownTheme(theme) == Theme::Light;
     const Greys& g = light ? kLight : kDark;
-    application.setStyle(QStyleFactory::create("Fusion"));
+    application.setStyle(new QuietStyle);
     const QPalette palette = paletteOf(g);
     application.setPalette(palette);
     // Fusion outlines a check box with a darker grey, which cannot be seen on a dark window: fill it lighter.
     QPalette checkBoxes = palette;
     checkBoxes.setColor(QPalette::Base, light ? g.base : g.button.lighter(130));
     QApplication::setPalette(checkBoxes, "QCheckBox");
+    QPalette menus = palette;
+    menus.setColor(QPalette::Base, light ? g.base : g.raised);
+    QApplication::setPalette(menus, "QMenu");
     QString sheet = kSheet;
-    for (const QColor& colour : {g.line, g.text, g.dim, g.accent, g.accentText, g.raised, g.button, g.window})
+    for (const QColor& colour : {g.line, g.text, g.dim, g.accent, g.accentText, g.raised, g.button, g.window,
+                                 light ? g.line : g.button.lighter(140)})
         sheet = sheet.arg(colour.name());
     application.setStyleSheet(sheet);
 }

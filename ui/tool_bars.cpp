@@ -12,6 +12,7 @@
 
 #include "ui/action_table.h"
 #include "ui/panels/colour_field.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 
@@ -63,8 +64,8 @@ void ToolOptionsBar::makeSelectionPages() {
     addPage(ToolId::Select, tr("Select"), tr("Double-click: up to the features around. ") + modes);
     addPage(ToolId::Lasso, tr("Lasso"), modes);
     const Page wand = addPage(ToolId::Wand, tr("Wand"), modes);
-    addNumber(wand, tr("Tolerance"), {}, 0, 100, kPercent,
-              [](ToolOptions& o) -> double& { return o.wand.tolerance; });
+    addNumber(wand, tr("Tolerance"), tr("How far colours may be from the one clicked, by how it looks"), {},
+              0, 100, kPercent, [](ToolOptions& o) -> double& { return o.wand.tolerance; });
     addSwitch(wand, tr("Contiguous"), tr("Only patches that hang together"),
               [](ToolOptions& o) -> bool& { return o.wand.contiguous; });
     addSwitch(wand, tr("Stop at features"), tr("Do not cross curves along which colours jump"),
@@ -83,12 +84,12 @@ void ToolOptionsBar::makeColourPages() {
 
     const Page brush = addPage(ToolId::Brush, tr("Recolour Brush"), tr("[ and ] change the size"));
     addColour(brush, tr("Colour"), colour);
-    addNumber(brush, tr("Size"), tr(" px"), .5, 2000, 1,
+    addNumber(brush, tr("Size"), tr("The radius, in image pixels"), tr(" px"), .5, 2000, 1,
               [](ToolOptions& o) -> double& { return o.brushRadiusPx; });
-    addNumber(brush, tr("Hardness"), tr(" %"), 0, 100, kPercent,
-              [](ToolOptions& o) -> double& { return o.brushHardness; });
-    addNumber(brush, tr("Strength"), tr(" %"), 0, 100, kPercent,
-              [](ToolOptions& o) -> double& { return o.brushStrength; });
+    addNumber(brush, tr("Hardness"), tr("How much of the brush is at full strength"), tr(" %"), 0, 100,
+              kPercent, [](ToolOptions& o) -> double& { return o.brushHardness; });
+    addNumber(brush, tr("Strength"), tr("How much of the colour a stroke lays down"), tr(" %"), 0, 100,
+              kPercent, [](ToolOptions& o) -> double& { return o.brushStrength; });
     addSwitch(brush, tr("Keep shading"), tr("Lights and shadows stay what they are"),
               [](ToolOptions& o) -> bool& { return o.brushKeepsShading; });
 
@@ -100,9 +101,11 @@ void ToolOptionsBar::makeColourPages() {
         addPage(ToolId::Gradient, tr("Gradient"), tr("Draw a line across the selected patches"));
     addColour(gradient, tr("From"), colour);
     addColour(gradient, tr("To"), second);
-    addNumber(gradient, tr("Strength"), tr(" %"), 0, 100, kPercent,
-              [](ToolOptions& o) -> double& { return o.gradientStrength; });
-    addNumber(gradient, tr("Feather"), tr(" px"), 0, 500, 1, feather);
+    addNumber(gradient, tr("Strength"), tr("How much of the gradient replaces the colours"), tr(" %"), 0, 100,
+              kPercent, [](ToolOptions& o) -> double& { return o.gradientStrength; });
+    addNumber(gradient, tr("Feather"),
+              tr("How far inside the selection's border it fades in; features stay sharp"), tr(" px"), 0, 500,
+              1, feather);
 }
 
 void ToolOptionsBar::makeShapePages() {
@@ -127,12 +130,10 @@ ToolOptionsBar::Page ToolOptionsBar::addPage(ToolId tool, const QString& name, c
     auto* row = new QHBoxLayout(widget);
     row->setContentsMargins(8, 2, 8, 2);
     row->setSpacing(8);
-    auto* title = new QLabel(name);
-    title->setProperty("role", "heading");
-    row->addWidget(title);
+    row->addWidget(headingLabel(name));
     row->addStretch(1);
-    auto* text = new QLabel(hint);
-    text->setProperty("role", "dim");
+    auto* text = dimLabel(hint);
+    text->setWordWrap(false);
     text->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     row->addWidget(text, 100);
     return {widget, row};
@@ -155,9 +156,11 @@ void insertLabelled(QHBoxLayout* row, const QString& name, QWidget* field) {
 
 }  // namespace
 
-void ToolOptionsBar::addNumber(const Page& page, const QString& name, const QString& suffix, double least,
-                               double most, double factor, double& (*field)(ToolOptions&)) {
+void ToolOptionsBar::addNumber(const Page& page, const QString& name, const QString& tip,
+                               const QString& suffix, double least, double most, double factor,
+                               double& (*field)(ToolOptions&)) {
     auto* box = new QDoubleSpinBox;
+    box->setToolTip(tip);
     box->setRange(least, most);
     box->setDecimals(most > 100 ? 1 : 0);
     box->setSuffix(suffix);
@@ -197,6 +200,7 @@ void ToolOptionsBar::addSource(const Page& page) {
     auto* box = new QComboBox;
     box->addItem(tr("Vector image"));
     box->addItem(tr("Original photo"));
+    box->setToolTip(tr("Which picture colours are taken from"));
     insertLabelled(page.row, tr("Pick from"), box);
     connect(box, &QComboBox::currentIndexChanged, this, [this](int index) {
         change([&](ToolOptions& options) {

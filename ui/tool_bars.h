@@ -38,8 +38,8 @@ class ToolOptionsBar : public QToolBar {
     };
 
     Page addPage(ToolId tool, const QString& name, const QString& hint);
-    void addNumber(const Page& page, const QString& name, const QString& suffix, double least, double most,
-                   double factor, double& (*field)(ToolOptions&));
+    void addNumber(const Page& page, const QString& name, const QString& tip, const QString& suffix,
+                   double least, double most, double factor, double& (*field)(ToolOptions&));
     void addSwitch(const Page& page, const QString& name, const QString& tip, bool& (*field)(ToolOptions&));
     void addColour(const Page& page, const QString& name, glm::dvec3& (*field)(ToolOptions&));
     void addSource(const Page& page);

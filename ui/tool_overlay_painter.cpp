@@ -1,8 +1,9 @@
 // See tool_overlay_painter.h.
 #include "ui/tool_overlay_painter.h"
 
-#include <algorithm>
 #include <array>
+
+#include "ui/conversions.h"
 
 namespace tessera {
 
@@ -16,15 +17,6 @@ const LineStyle kHoveredCurve{QColor(255, 255, 255), kDark, 1.8, 4.2};
 const LineStyle kBlocking{kStop, QColor(40, 0, 0, 190), 2.2, 5};
 constexpr double kVertexPx = 8, kControlPx = 7, kBlurPx = 10, kHoverFactor = 1.35;
 constexpr double kSwatchPx = 44, kSwatchOffsetPx = 18;
-
-QPointF toPoint(glm::dvec2 p) {
-    return {p.x, p.y};
-}
-
-QColor toColour(glm::dvec3 c) {
-    return QColor::fromRgbF(float(std::clamp(c.r, 0., 1.)), float(std::clamp(c.g, 0., 1.)),
-                            float(std::clamp(c.b, 0., 1.)));
-}
 
 class Painter {
   public:
@@ -81,7 +73,7 @@ class Painter {
         mPainter.setPen(QPen(Qt::white, 2 * mRatio));
         for (const auto& [where, colour] : {std::pair{gradient.line.from, gradient.fromColour},
                                             std::pair{gradient.line.to, gradient.toColour}}) {
-            mPainter.setBrush(toColour(colour));
+            mPainter.setBrush(toQColor(colour));
             mPainter.drawEllipse(box(where, 14 * mRatio));
         }
     }
@@ -89,7 +81,7 @@ class Painter {
     void swatch(const OverlaySwatch& swatch) {
         const QPointF corner = at(swatch.at) + QPointF(kSwatchOffsetPx, kSwatchOffsetPx) * mRatio;
         mPainter.setPen(QPen(Qt::white, 2 * mRatio));
-        mPainter.setBrush(toColour(swatch.colour));
+        mPainter.setBrush(toQColor(swatch.colour));
         mPainter.drawEllipse(QRectF(corner, QSizeF(kSwatchPx, kSwatchPx) * mRatio));
     }
 

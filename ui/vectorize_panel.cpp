@@ -6,11 +6,10 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
+#include <QGridLayout>
 #include <QLabel>
 #include <QLocale>
 #include <QPushButton>
-#include <QSlider>
-#include <QSpinBox>
 #include <QVBoxLayout>
 #include <cmath>
 
@@ -18,48 +17,23 @@
 #include "app/workspace.h"
 #include "core/vectorize/quality.h"
 #include "ui/action_table.h"
+#include "ui/amount_field.h"
+#include "ui/panels/gesture_slider.h"
 #include "ui/status_bar.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 
 namespace {
 
-constexpr int kMinPatches = 2;
-constexpr int kMaxPatches = 1'000'000;
-constexpr int kPanelWidthPx = 280;
 constexpr int kFieldHeightPx = 28;
 // Among the presets, what stands for the paper's method.
 const QString kPaper = "paper";
 
-QLabel* heading(const QString& text) {
-    auto* label = new QLabel(text);
-    label->setProperty("role", "heading");
-    return label;
-}
-
-QLabel* dimLabel(const QString& text) {
-    auto* label = new QLabel(text);
-    label->setProperty("role", "dim");
-    label->setWordWrap(true);
-    return label;
-}
-
-QFrame* line() {
-    auto* frame = new QFrame;
-    frame->setProperty("role", "line");
-    return frame;
-}
-
-QVBoxLayout* makeColumn(QWidget* part) {
-    auto* column = new QVBoxLayout(part);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(8);
-    return column;
-}
-
 QHBoxLayout* labelled(const QString& text, QWidget* field) {
     auto* label = new QLabel(text);
     label->setBuddy(field);
+    field->setAccessibleName(QString(text).remove('&'));
     auto* row = new QHBoxLayout;
     row->addWidget(label);
     row->addWidget(field, 1);
@@ -93,19 +67,17 @@ VectorizePanel::VectorizePanel(Settings& settings, const ActionTable& actions, Q
     column->setContentsMargins(16, 12, 16, 16);
     column->setSpacing(16);
     column->addWidget(makeVectorizePart(actions));
-    column->addWidget(line());
+    column->addWidget(separatorLine());
     column->addWidget(makeShowPart(actions));
     column->addWidget(mResult = makeResultPart());
     column->addStretch(1);
-    setMinimumWidth(kPanelWidthPx);
     showSession(nullptr, 0);
 }
 
 QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     auto* part = new QWidget;
-    auto* column = makeColumn(part);
-    column->addLayout(makePatchesRow());
-    column->addWidget(dimLabel(tr("More patches keep more detail; fewer are easier to edit.")));
+    auto* column = partColumn(part);
+    column->addWidget(mAmount = makeAmountField());
     column->addLayout(makeQualityRow());
     column->addWidget(mFeaturesPart = makeFeaturesPart());
     column->addWidget(mEdgeContrastPart = makeEdgeContrastPart());
@@ -113,8 +85,10 @@ QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     column->addSpacing(4);
     column->addWidget(makeVectorizeButton(actions));
     column->addSpacing(4);
-    column->addWidget(makeOption(tr("Vectorize photos when opened"), mSettings.vectorizeOnOpen(),
-                                 &Settings::setVectorizeOnOpen));
+    auto* onOpen = makeOption(tr("Vectorize photos when opened"), mSettings.vectorizeOnOpen(),
+                              &Settings::setVectorizeOnOpen);
+    onOpen->setToolTip(tr("Start at once, with what is set here; it can be cancelled and done again"));
+    column->addWidget(onOpen);
     auto* embed =
         makeOption(tr("Keep the photo in the saved file"), mSettings.embedPhoto(), &Settings::setEmbedPhoto);
     embed->setToolTip(
@@ -123,20 +97,12 @@ QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     return part;
 }
 
-QLayout* VectorizePanel::makePatchesRow() {
-    mPatches = new QSpinBox;
-    mPatches->setObjectName("patches");
-    mPatches->setRange(kMinPatches, kMaxPatches);
-    mPatches->setGroupSeparatorShown(true);
-    mPatches->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
-    mPatches->setAlignment(Qt::AlignRight);
-    mPatches->setMinimumHeight(kFieldHeightPx);
-    mPatches->setFocusPolicy(
-        Qt::StrongFocus);  // not by the wheel: it shall not change while one scrolls past
-    mPatches->setValue(mSettings.patches());
-    connect(mPatches, &QSpinBox::valueChanged, this, [this](int patches) { mSettings.setPatches(patches); });
-    connect(mPatches, &QSpinBox::editingFinished, this, &VectorizePanel::editingDone);
-    return labelled(tr("&Patches"), mPatches);
+AmountField* VectorizePanel::makeAmountField() {
+    auto* amount = new AmountField(mSettings);
+    connect(amount, &AmountField::draftWanted, this, &VectorizePanel::draftWanted);
+    connect(amount, &AmountField::draftDropped, this, &VectorizePanel::draftDropped);
+    connect(amount, &AmountField::editingDone, this, &VectorizePanel::editingDone);
+    return amount;
 }
 
 QLayout* VectorizePanel::makeQualityRow() {
@@ -164,19 +130,19 @@ QLayout* VectorizePanel::makeQualityRow() {
 }
 
 QWidget* VectorizePanel::makeFeaturesPart() {
-    mFeatures = new QSlider(Qt::Horizontal);
+    mFeatures = new GestureSlider;
     mFeatures->setObjectName("features");
     mFeatures->setRange(0, 100);
     mFeatures->setPageStep(10);
-    mFeatures->setMinimumHeight(kFieldHeightPx);
-    mFeatures->setFocusPolicy(Qt::TabFocus);
     mFeatures->setValue(int(std::lround(100 * mSettings.features())));
     connect(mFeatures, &QSlider::valueChanged, this,
             [this](int percent) { mSettings.setFeatures(percent / 100.0); });
-    connect(mFeatures, &QSlider::sliderReleased, this, &VectorizePanel::editingDone);
+    connect(mFeatures, &GestureSlider::ended, this, [this] {
+        if (mDraftShown) emit draftWanted();
+    });
     mFeatures->setToolTip(tr("How many outlines stay sharp when enlarged; to the left, none"));
     auto* part = new QWidget;
-    makeColumn(part)->addLayout(labelled(tr("&Outlines"), mFeatures));
+    partColumn(part)->addLayout(labelled(tr("&Outlines"), mFeatures));
     return part;
 }
 
@@ -198,13 +164,13 @@ QWidget* VectorizePanel::makeEdgeContrastPart() {
         tr("Edges above this share of the strongest become features. Raise it where they hold too many "
            "patches"));
     auto* part = new QWidget;
-    makeColumn(part)->addLayout(labelled(tr("&Edge contrast"), mEdgeContrast));
+    partColumn(part)->addLayout(labelled(tr("&Edge contrast"), mEdgeContrast));
     return part;
 }
 
 QPushButton* VectorizePanel::makeVectorizeButton(const ActionTable& actions) {
     QAction* vectorize = actions[ActionId::Vectorize];
-    auto* button = new QPushButton(tr("Vectorize"));
+    auto* button = mApply = new QPushButton(tr("Vectorize"));
     button->setObjectName("vectorizeButton");
     button->setProperty("role", "primary");
     button->setMinimumHeight(34);
@@ -231,25 +197,31 @@ bool VectorizePanel::paperChosen() const {
 void VectorizePanel::showFieldsOfMethod() {
     mFeaturesPart->setVisible(!paperChosen());
     mEdgeContrastPart->setVisible(paperChosen());
+    mAmount->setErrorPossible(!paperChosen());
 }
 
 QWidget* VectorizePanel::makeShowPart(const ActionTable& actions) {
     auto* part = new QWidget;
-    auto* column = makeColumn(part);
-    column->addWidget(heading(tr("Show")));
-    for (const ActionId id :
-         {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowOriginal})
-        column->addWidget(boxFor(actions[id]));
-    column->addWidget(dimLabel(tr("Hold O to peek at the original.")));
+    auto* column = partColumn(part);
+    column->addWidget(headingLabel(tr("Show")));
+    auto* grid = new QGridLayout;
+    grid->setVerticalSpacing(8);
+    int at = 0;
+    for (const ActionId id : {ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints,
+                              ActionId::ShowCentres, ActionId::ShowHeatMap, ActionId::ShowOriginal}) {
+        grid->addWidget(boxFor(actions[id]), at / 2, at % 2);
+        ++at;
+    }
+    column->addLayout(grid);
     return part;
 }
 
 QWidget* VectorizePanel::makeResultPart() {
     auto* part = new QWidget;
-    auto* column = makeColumn(part);
-    column->addWidget(line());
+    auto* column = partColumn(part);
+    column->addWidget(separatorLine());
     column->addSpacing(8);
-    column->addWidget(heading(tr("Result")));
+    column->addWidget(headingLabel(tr("Result")));
     mFigures = new QFormLayout;
     mFigures->setHorizontalSpacing(16);
     mFigures->setVerticalSpacing(6);
@@ -268,7 +240,7 @@ VectorizeSettings VectorizePanel::settings(const DocumentSession* session) const
         settings.method = method.toStdString();
         settings.stageVariants.clear();
     }
-    settings.patches = mPatches->value();
+    settings.patches = mAmount->patches();
     if (paperChosen()) {
         // The lower threshold follows in the paper's proportion.
         const VectorizeSettings usual;
@@ -286,12 +258,22 @@ VectorizeSettings VectorizePanel::settings(const DocumentSession* session) const
     return settings;
 }
 
+std::optional<double> VectorizePanel::meanError() const {
+    return mAmount->meanError();
+}
+
 void VectorizePanel::setPatches(int patches) {
-    mPatches->setValue(patches);
+    mAmount->setPatches(patches);
+}
+
+void VectorizePanel::showDraft(std::optional<size_t> patches) {
+    mDraftShown = patches.has_value();
+    mAmount->showDraft(patches);
+    mApply->setText(mDraftShown ? tr("Apply") : tr("Vectorize"));
 }
 
 void VectorizePanel::showSettings(const VectorizeSettings& settings) {
-    setPatches(settings.patches);
+    mAmount->setPatches(settings.patches);
     if (settings.method == "paper") {
         mQuality->setCurrentIndex(mQuality->findData(kPaper));
         mEdgeContrast->setValue(100 * settings.cannyHigh);
@@ -303,6 +285,7 @@ void VectorizePanel::showSettings(const VectorizeSettings& settings) {
 
 void VectorizePanel::showSession(const DocumentSession* session, size_t features) {
     const bool hasMesh = session && session->hasMesh();
+    mAmount->setPicture(session ? QSize(session->width(), session->height()) : QSize());
     mResult->setVisible(hasMesh);
     if (!hasMesh) return;
     while (mFigures->rowCount() > 0) mFigures->removeRow(0);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QWidget>
+#include <optional>
 
 #include "app/settings.h"
 #include "core/vectorize/settings.h"
@@ -13,14 +14,13 @@ class QFormLayout;
 class QHBoxLayout;
 class QLabel;
 class QPushButton;
-class QSlider;
-class QSpinBox;
-class QToolButton;
 
 namespace tessera {
 
 class ActionTable;
+class AmountField;
 class DocumentSession;
+class GestureSlider;
 
 class VectorizePanel : public QWidget {
     Q_OBJECT
@@ -30,7 +30,11 @@ class VectorizePanel : public QWidget {
 
     // What the user asks for: the document's own settings with what the panel's fields say.
     VectorizeSettings settings(const DocumentSession* session) const;
+    // The mean error that is wanted in the place of settings().patches, in levels of 255.
+    std::optional<double> meanError() const;
     void setPatches(int patches);
+    // How many patches the draft on the canvas has; none where it shows the document.
+    void showDraft(std::optional<size_t> patches);
     // Makes the fields say what a document was made with.
     void showSettings(const VectorizeSettings& settings);
     // Shows what the document holds; null where none is open.
@@ -39,10 +43,13 @@ class VectorizePanel : public QWidget {
   signals:
     // The user has finished with a field: keys shall go to the canvas again.
     void editingDone();
+    // The draft of settings() would be good to see; it is not wanted any more.
+    void draftWanted();
+    void draftDropped();
 
   private:
     QWidget* makeVectorizePart(const ActionTable& actions);
-    QLayout* makePatchesRow();
+    AmountField* makeAmountField();
     QLayout* makeQualityRow();
     QWidget* makeFeaturesPart();
     QWidget* makeEdgeContrastPart();
@@ -54,12 +61,14 @@ class VectorizePanel : public QWidget {
     QWidget* makeShowPart(const ActionTable& actions);
 
     Settings& mSettings;
-    QSpinBox* mPatches = nullptr;
+    AmountField* mAmount = nullptr;
+    bool mDraftShown = false;
     QComboBox* mQuality = nullptr;  // its data: a preset's name, or the paper's method; none is "custom"
     QWidget* mFeaturesPart = nullptr;
-    QSlider* mFeatures = nullptr;  // in percent
+    GestureSlider* mFeatures = nullptr;  // in percent
     QWidget* mEdgeContrastPart = nullptr;
     QDoubleSpinBox* mEdgeContrast = nullptr;  // in percent
+    QPushButton* mApply = nullptr;
     QWidget* mResult = nullptr;
     QFormLayout* mFigures = nullptr;
     QLabel* mShortfall = nullptr;

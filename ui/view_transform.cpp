@@ -37,11 +37,11 @@ void ViewTransform::panBy(QPointF screen) {
     alignToPixels();
 }
 
-void ViewTransform::fit(QSizeF image, QSizeF view, double margin) {
+void ViewTransform::fit(QSizeF image, QSizeF view, double margin, double largest) {
     if (image.isEmpty() || view.isEmpty()) return;
     const double room =
         std::min((view.width() - 2 * margin) / image.width(), (view.height() - 2 * margin) / image.height());
-    mScale = std::clamp(std::min(1.0, room), kMinScale, kMaxScale);
+    mScale = std::clamp(std::min(largest, room), kMinScale, kMaxScale);
     mOrigin = QPointF(view.width() - image.width() * mScale, view.height() - image.height() * mScale) / 2;
     alignToPixels();
 }

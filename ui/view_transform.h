@@ -28,9 +28,9 @@ class ViewTransform {
     void setScaleAt(QPointF anchor, double scale);
 
     void panBy(QPointF screen);
-    // Shows the whole image in the middle of the view with `margin` screen pixels around it; never above 100
-    // % for an image that fits as it is.
-    void fit(QSizeF image, QSizeF view, double margin);
+    // Shows the whole image in the middle of the view with `margin` screen pixels around it, no larger than at
+    // the scale `largest`.
+    void fit(QSizeF image, QSizeF view, double margin, double largest = 1);
     // Moves the least that leaves some of the image in view.
     void keepInView(QSizeF image, QSizeF view);
 

@@ -127,6 +127,21 @@ TEST_F(WorkspaceTest, ClosingAllStopsAtTheFirstThatIsKept) {
     EXPECT_EQ(workspace.session()->displayName(), "a.tessera");
 }
 
+TEST_F(WorkspaceTest, ClosingAllEndsWithASaveThatFails) {
+    open(documentFile("a.tessera"));
+    open(documentFile("b.tessera"));
+    change();
+    std::optional<bool> closed;
+    const CloseAnswer elsewhere{.kind = CloseAnswer::Kind::Save, .path = path("no/such/folder/b.tessera")};
+    workspace.closeAll(answering(elsewhere), [&](bool all) { closed = all; });
+    ASSERT_TRUE(QTest::qWaitFor([&] { return closed.has_value(); }, kWaitMs)) << "nobody was told";
+    EXPECT_FALSE(*closed);
+    EXPECT_EQ(said.kind, Message::Kind::Error);
+    EXPECT_EQ(workspace.sessions().size(), 2);
+    EXPECT_TRUE(workspace.session()->modified());
+    EXPECT_EQ(asked, 1);
+}
+
 TEST_F(WorkspaceTest, ASaveWaitsForTheEndOfAGesture) {
     open(documentFile("a.tessera"));
     const auto edit = [](PatchMesh& mesh) { return testing::paint(mesh, PatchId(3), .5f); };

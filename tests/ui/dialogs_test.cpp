@@ -35,7 +35,6 @@
 #include "ui/dialogs/recovery_dialog.h"
 #include "ui/icons.h"
 #include "ui/start_page.h"
-#include "ui/svg_drawing.h"
 #include "ui/thumbnail.h"
 
 namespace tessera {
@@ -95,33 +94,6 @@ QColor strongest(const QImage& image) {
 }
 
 // Icons.
-
-TEST(SvgDrawing, ReadsPathsAsTheyAreWritten) {
-    const auto path = readSvgPath(u"M2 3H10V7L4 9Z");
-    ASSERT_TRUE(path);
-    EXPECT_EQ(path->boundingRect(), QRectF(2, 3, 8, 6));
-    // Three quarters of a circle around 12, 12: the corner at the lower left is not reached.
-    const auto arc = readSvgPath(u"M4 12A8 8 0 1 1 12 20");
-    ASSERT_TRUE(arc);
-    EXPECT_LT((arc->currentPosition() - QPointF(12, 20)).manhattanLength(), 1e-6);
-    EXPECT_NEAR(arc->boundingRect().right(), 20, 1e-2);
-    EXPECT_NEAR(arc->boundingRect().top(), 4, 1e-2);
-    EXPECT_NEAR(arc->length(), 12 * 3.14159265, .1);
-    const auto other = readSvgPath(u"M4 12A8 8 0 0 0 12 20");
-    ASSERT_TRUE(other);
-    EXPECT_NEAR(other->length(), 4 * 3.14159265, .05);
-    EXPECT_NEAR(other->boundingRect().left(), 4, 1e-2);
-}
-
-TEST(SvgDrawing, RefusesWhatItDoesNotUnderstand) {
-    EXPECT_FALSE(readSvgPath(u"M2 3Q4 5 6 7"));
-    EXPECT_FALSE(readSvgPath(u"M2"));
-    EXPECT_FALSE(readSvgPath(u"M2 3 4 5"));
-    EXPECT_FALSE(readSvgPath(u"M0 0A4 5 0 0 1 8 0"));
-    EXPECT_FALSE(readSvgDrawing("<svg viewBox=\"0 0 24 24\" stroke-width=\"2\"><text/></svg>"));
-    EXPECT_FALSE(readSvgDrawing("<svg viewBox=\"0 0 24 24\" stroke-width=\"2\"><circle"));
-    EXPECT_FALSE(readSvgDrawing("<svg/>"));
-}
 
 TEST(IconsTest, AllDrawSomethingOfTheirOwnWithinTheGrid) {
     const QStringList names = iconNames();

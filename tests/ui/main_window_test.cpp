@@ -2,14 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <QComboBox>
+#include <QDir>
 #include <QDoubleSpinBox>
 #include <QFile>
 #include <QSlider>
+#include <QSpinBox>
 
 #include "core/export/rasterize.h"
 #include "core/vectorize/quality.h"
 #include "tests/ui/main_window_fixture.h"
+#include "ui/panels/gesture_slider.h"
 #include "ui/status_bar.h"
+#include "ui/theme.h"
 
 namespace tessera {
 namespace {
@@ -69,6 +73,83 @@ TEST_F(MainWindowTest, ADocumentsOwnSettingsStay) {
     Settings().setQuality("standard");
 }
 
+// What the canvas shows while the slider goes through the drafts is no part of the document.
+TEST_F(MainWindowTest, DraftsFollowTheSliderUntilOneIsApplied) {
+    openPhoto();
+    vectorize();
+    auto* slider = window->panel().findChild<GestureSlider*>("amountSlider");
+    auto* button = window->panel().findChild<QPushButton*>("vectorizeButton");
+    ASSERT_TRUE(slider && button);
+    QTest::qWait(100);
+    ASSERT_TRUE(settled());
+    const QImage document = grab();
+    const uint64_t revision = session()->revision();
+    const auto drag = [&](double share) {
+        const QImage before = grab();
+        const QPoint to(int(slider->xOf(int(share * slider->maximum()))), slider->height() / 2);
+        QTest::mousePress(slider, Qt::LeftButton, {}, QPoint(int(slider->xOf(slider->value())), to.y()));
+        QTest::mouseMove(slider, to);
+        QTest::mouseRelease(slider, Qt::LeftButton, {}, to);
+        ASSERT_TRUE(QTest::qWaitFor([&] { return canvas().settled() && grab() != before; }, kWaitMs / 10));
+        EXPECT_EQ(button->text(), "Apply");
+    };
+    drag(.9);
+    const QImage fine = grab();
+    EXPECT_GT(difference(fine, document), 0);
+    drag(0);
+    const QImage coarse = grab();
+    EXPECT_GT(difference(coarse, fine), 0);
+    EXPECT_LT(difference(coarse, document), 30) << "no picture of the disk";
+    EXPECT_EQ(session()->revision(), revision);
+    EXPECT_EQ(window->width(), 1000) << "the name of a job has widened the window";
+    // Tools have nothing to work on, and say so.
+    QTest::mouseClick(&canvas(), Qt::LeftButton, {}, canvas().rect().center());
+    EXPECT_TRUE(session()->selection().empty());
+    EXPECT_TRUE(window->messages().text().contains("draft"));
+    QTest::keyClick(&canvas(), Qt::Key_Escape);
+    EXPECT_TRUE(window->messages().text().isEmpty());
+    QTest::qWait(50);
+    ASSERT_TRUE(settled());
+    EXPECT_EQ(button->text(), "Vectorize");
+    EXPECT_EQ(difference(grab(), document), 0);
+    drag(.5);
+    QTest::mouseClick(button, Qt::LeftButton);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(button->text(), "Vectorize");
+    EXPECT_NE(session()->revision(), revision);
+    QTest::keyClick(&canvas(), Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_EQ(session()->revision(), revision);
+}
+
+TEST_F(MainWindowTest, TheAmountCanBeADetailOrAnError) {
+    openPhoto();
+    auto* amount = window->panel().findChild<QComboBox*>("amount");
+    auto* slider = window->panel().findChild<GestureSlider*>("amountSlider");
+    auto* quality = window->panel().findChild<QComboBox*>("quality");
+    ASSERT_TRUE(amount && slider && quality);
+    amount->setFocus();
+    QTest::keyClick(amount, Qt::Key_Down);
+    window->panel().findChild<QSpinBox*>("detail")->setValue(100);
+    EXPECT_EQ(window->panel().settings(session()).patches, patchesForDetail(1, 160, 120));
+    EXPECT_EQ(slider->value(), slider->maximum());
+    QTest::keyClick(amount, Qt::Key_Down);
+    EXPECT_FALSE(slider->isVisible());
+    window->panel().findChild<QDoubleSpinBox*>("meanError")->setValue(2);
+    QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+    ASSERT_TRUE(idle());
+    ASSERT_TRUE(session()->hasMesh()) << window->messages().text().toStdString();
+    const Document& document = session()->document();
+    EXPECT_EQ(document.report.stages.front().stage, "search");
+    EXPECT_TRUE(std::abs(document.difference->mae - 2) < .2 || !document.report.shortfall.empty());
+    // The paper's method can search for no error.
+    quality->setFocus();
+    QTest::keyClick(quality, Qt::Key_End);
+    EXPECT_EQ(amount->currentIndex(), 0);
+    EXPECT_FALSE(window->panel().meanError().has_value());
+    Settings().setQuality("standard");
+    Settings().setAmount("patches");
+}
+
 TEST_F(MainWindowTest, ShowsThePhotoPixelForPixelAt100Percent) {
     openPhoto();
     EXPECT_FALSE(session()->hasMesh());
@@ -77,6 +158,23 @@ TEST_F(MainWindowTest, ShowsThePhotoPixelForPixelAt100Percent) {
     EXPECT_EQ(canvas().view().scale(), 1);
     const QImage shown = grab().copy(QRect(canvas().view().origin().toPoint(), QSize(160, 120)));
     EXPECT_EQ(difference(shown, QImage(photo)), 0);
+}
+
+TEST_F(MainWindowTest, PicturesAreInTheColoursOfTheScreen) {
+    openPhoto();
+    QTest::keyClick(&canvas(), Qt::Key_1, Qt::ControlModifier);
+    const QRect area(canvas().view().origin().toPoint(), QSize(160, 120));
+    const QImage plain = grab();
+    canvas().setScreenColours(QColorSpace::DisplayP3);
+    const QImage wide = grab();
+    QImage expected = plain.copy(area);
+    expected.applyColorTransform(
+        QColorSpace(QColorSpace::SRgb).transformationToColorSpace(QColorSpace::DisplayP3));
+    EXPECT_LT(difference(wide.copy(area), expected), .5);
+    EXPECT_GT(difference(wide.copy(area), plain.copy(area)), 2);
+    EXPECT_EQ(wide.pixelColor(2, 2), plain.pixelColor(2, 2)) << "the ground is no picture";
+    canvas().setScreenColours(QColorSpace::SRgb);
+    EXPECT_EQ(difference(grab(), plain), 0);
 }
 
 TEST_F(MainWindowTest, VectorizesInTheBackgroundAndUndoes) {
@@ -238,6 +336,18 @@ TEST_F(MainWindowTest, CancelLeavesTheDocumentUntouched) {
     EXPECT_TRUE(window->messages().text().isEmpty()) << "what one asked for is no error";
 }
 
+TEST_F(MainWindowTest, AMessageLeavesThePictureWhereItIs) {
+    openPhoto();
+    const QRect before = canvas().geometry();
+    const QPointF origin = canvas().view().origin();
+    window->messages().show({.kind = Message::Kind::Error, .text = "Something has failed."});
+    QTest::qWait(50);
+    EXPECT_TRUE(window->messages().isVisible());
+    EXPECT_EQ(canvas().geometry(), before);
+    EXPECT_EQ(canvas().view().origin(), origin);
+    EXPECT_TRUE(window->messages().geometry().intersects(before));
+}
+
 TEST_F(MainWindowTest, OpensWhatIsDropped) {
     drop(photo);
     ASSERT_TRUE(idle());
@@ -271,6 +381,60 @@ TEST_F(MainWindowTest, AsksBeforeChangesAreLost) {
     answer(QMessageBox::Discard);
     window->close();
     EXPECT_TRUE(QTest::qWaitFor([&] { return !window->isVisible(); }, kWaitMs));
+}
+
+TEST_F(MainWindowTest, StaysOpenWhereASaveAtTheEndFails) {
+    openPhoto();
+    vectorize();
+    const QString path = folder.filePath("gone/disk.tessera");
+    ASSERT_TRUE(QDir(folder.path()).mkdir("gone"));
+    window->saveTo(path);
+    ASSERT_TRUE(idle());
+    vectorize();
+    ASSERT_TRUE(QDir(folder.filePath("gone")).removeRecursively());
+    answer(QMessageBox::Save);
+    EXPECT_FALSE(window->close());
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(window->isVisible());
+    EXPECT_TRUE(window->messages().showsError());
+    EXPECT_TRUE(session()->modified());
+    answer(QMessageBox::Discard);
+    window->close();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return !window->isVisible(); }, kWaitMs));
+}
+
+TEST_F(MainWindowTest, VectorizesPhotosAsTheyAreOpenedAndNotAsTheyAreLookedAt) {
+    openPhoto();
+    const QString second = folder.filePath("second.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    window->open(second);
+    ASSERT_TRUE(idle());
+    Settings().setVectorizeOnOpen(true);
+    workspace().setCurrent(workspace().sessions().first());
+    EXPECT_FALSE(workspace().running(JobKind::Vectorize));
+    const QString third = folder.filePath("third.png");
+    ASSERT_TRUE(disk(80, 60).save(third));
+    window->open(third);
+    ASSERT_TRUE(idle());
+    Settings().setVectorizeOnOpen(false);
+    ASSERT_EQ(workspace().sessions().size(), 3);
+    EXPECT_TRUE(session()->hasMesh());
+    EXPECT_FALSE(workspace().sessions().first()->hasMesh());
+}
+
+TEST_F(MainWindowTest, MakingAWindowSetsNoThemeAgain) {
+    struct Counter : QObject {
+        bool eventFilter(QObject* object, QEvent* event) override {
+            changes += object == qApp && event->type() == QEvent::ApplicationPaletteChange ? 1 : 0;
+            return false;
+        }
+        int changes = 0;
+    } counter;
+    qApp->installEventFilter(&counter);
+    const MainWindow another;
+    EXPECT_EQ(counter.changes, 0);
+    applyTheme(*qApp, Settings().theme());
+    EXPECT_GT(counter.changes, 0) << "the counter sees nothing";
 }
 
 TEST_F(MainWindowTest, ExportsAtTheChosenScale) {

@@ -7,7 +7,9 @@
 #include <QImage>
 #include <algorithm>
 
+#include "core/mesh/patch_query.h"
 #include "tests/support/test_meshes.h"
+#include "ui/centres_painter.h"
 
 namespace tessera {
 namespace {
@@ -53,7 +55,6 @@ TEST(OverlayPainterTest, CanBeSeenOnBlackWhiteAndGrey) {
         mesh.setCurve(e, curve);
     });
     const OverlayPainter overlay(mesh);
-    EXPECT_EQ(overlay.featureCount(), mesh.connectivity().edgeCount());
     for (const OverlayOptions& options :
          {kEdges, OverlayOptions{.features = true}, OverlayOptions{.controlPoints = true}})
         for (const int grey : {0, 60, 128, 190, 255}) {
@@ -78,6 +79,69 @@ TEST(OverlayPainterTest, LinesKeepTheirWidthAtAnyZoom) {
         EXPECT_LE(touched(paint(overlay, view, {400, 400}, Qt::gray, kEdges), 30, Qt::gray), near) << scale;
         EXPECT_GT(touched(paint(overlay, view, {400, 400}, Qt::gray, kEdges), 30, Qt::gray), 0) << scale;
     }
+}
+
+// Two columns of cells of one colour each, a feature between them.
+PatchMesh twoColours(float left, float right) {
+    PatchMesh mesh = testing::gridMesh(100, 100, 2, 1);
+    mesh.forEachPatch([&](PatchId p) {
+        const bool isLeft = controlBounds(mesh, p).max.x < 51;
+        const std::array<float, 3> grey{isLeft ? left : right, isLeft ? left : right, isLeft ? left : right};
+        mesh.setSpline(p, constantSpline(grey));
+    });
+    mesh.forEachEdge([&](EdgeId e) {
+        const auto p = mesh.controlPoints(HalfedgeMesh::halfedge(e));
+        EdgeCurve curve = mesh.curve(e);
+        curve.feature = toPixels(p[0]).x == 50 && toPixels(p[3]).x == 50;
+        mesh.setCurve(e, curve);
+    });
+    return mesh;
+}
+
+TEST(OverlayPainterTest, TheColourOfAFeatureSaysHowFarColoursJump) {
+    constexpr OverlayOptions kImportance{.features = true, .tint = FeatureTint::Importance};
+    const auto hueOf = [&](const OverlayPainter& overlay) {
+        return paint(overlay, scaled(4), {400, 400}, Qt::black, kImportance).pixelColor(200, 200).hue();
+    };
+    const auto measured = [](const PatchMesh& mesh) {
+        OverlayPainter overlay(mesh);
+        overlay.measureJumps(mesh);
+        return overlay;
+    };
+    const PatchMesh strong = twoColours(.1F, .9F), faint = twoColours(.5F, .51F);
+    OverlayPainter overlay = measured(strong);
+    const int yellow = hueOf(overlay);
+    EXPECT_NEAR(yellow, 45, 15);
+    EXPECT_NEAR(hueOf(measured(faint)), 218, 15);
+    std::vector<EdgeId> all;
+    faint.forEachEdge([&](EdgeId e) { all.push_back(e); });
+    overlay.update(faint, all);
+    EXPECT_NEAR(hueOf(overlay), 218, 15) << "an edit left the old jump";
+}
+
+TEST(CentresPainterTest, CentresAppearWhereThereIsRoomAndKeepTheirSize) {
+    const PatchMesh mesh = testing::gridMesh(100, 100, 1, 1);
+    const auto marks = [&](double scale, QPointF at) {
+        QImage image(400, 400, QImage::Format_RGB32);
+        image.fill(Qt::gray);
+        ViewTransform view = scaled(scale);
+        view.panBy(QPointF(200, 200) - view.toScreen(at));
+        QPainter painter(&image);
+        paintCentres(painter, mesh, view, QRectF(image.rect()), 1);
+        painter.end();
+        int count = 0;
+        for (int y = 0; y < image.height(); ++y)
+            for (int x = 0; x < image.width(); ++x)
+                count += image.pixelColor(x, y) != QColor(Qt::gray) ? 1 : 0;
+        return count;
+    };
+    EXPECT_EQ(marks(.3, {50, 50}), 0) << "they hide what they belong to";
+    EXPECT_GT(marks(4, {50, 50}), 200);
+    // The one in the corner, alone in view.
+    const int near = marks(40, {0, 0});
+    EXPECT_GT(near, 15);
+    EXPECT_LT(near, 120);
+    EXPECT_NEAR(marks(300, {0, 0}), near, 12);
 }
 
 TEST(OverlayPainterTest, TwentyThousandPatchesInOneView) {

@@ -9,7 +9,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "ui/dialogs/dialog_parts.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 

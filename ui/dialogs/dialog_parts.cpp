@@ -10,19 +10,6 @@
 
 namespace tessera {
 
-QLabel* headingLabel(const QString& text) {
-    auto* label = new QLabel(text);
-    label->setProperty("role", "heading");
-    return label;
-}
-
-QLabel* dimLabel(const QString& text) {
-    auto* label = new QLabel(text);
-    label->setProperty("role", "dim");
-    label->setWordWrap(true);
-    return label;
-}
-
 QVBoxLayout* dialogColumn(QDialog* dialog) {
     auto* column = new QVBoxLayout(dialog);
     column->setContentsMargins(20, 20, 20, 16);

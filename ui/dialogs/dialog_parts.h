@@ -6,7 +6,6 @@
 class QDialog;
 class QDialogButtonBox;
 class QFormLayout;
-class QLabel;
 class QLayout;
 class QPushButton;
 class QVBoxLayout;
@@ -14,9 +13,6 @@ class QWidget;
 
 namespace tessera {
 
-QLabel* headingLabel(const QString& text);
-// Quiet text that wraps.
-QLabel* dimLabel(const QString& text);
 // The dialog's outermost layout.
 QVBoxLayout* dialogColumn(QDialog* dialog);
 QFormLayout* dialogForm();

@@ -22,6 +22,7 @@
 #include "ui/dialogs/dialog_parts.h"
 #include "ui/icons.h"
 #include "ui/status_bar.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 

@@ -9,7 +9,6 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
-#include "ui/dialogs/dialog_parts.h"
 #include "ui/dialogs/key_edit.h"
 #include "ui/icons.h"
 

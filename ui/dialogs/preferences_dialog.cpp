@@ -13,6 +13,7 @@
 
 #include "ui/dialogs/dialog_parts.h"
 #include "ui/dialogs/key_page.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 

@@ -11,6 +11,7 @@
 
 #include "ui/dialogs/dialog_parts.h"
 #include "ui/icons.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 

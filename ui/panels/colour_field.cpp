@@ -6,6 +6,7 @@
 #include <QRegularExpressionValidator>
 #include <QToolButton>
 
+#include "ui/conversions.h"
 #include "ui/panels/colour_popup.h"
 #include "ui/panels/panel_parts.h"
 #include "ui/panels/swatch_button.h"

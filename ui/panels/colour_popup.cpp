@@ -13,8 +13,8 @@
 #include <cmath>
 
 #include "core/image/oklab.h"
+#include "ui/conversions.h"
 #include "ui/panels/gesture_slider.h"
-#include "ui/panels/panel_parts.h"
 
 namespace tessera {
 

@@ -12,6 +12,7 @@
 
 #include "app/document_session.h"
 #include "ui/panels/panel_parts.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 
@@ -51,7 +52,7 @@ class StepDelegate : public QStyledItemDelegate {
 
 }  // namespace
 
-HistoryPanel::HistoryPanel(QWidget* parent) : QWidget(parent), mList(new QListView), mMemory(panelHint({})) {
+HistoryPanel::HistoryPanel(QWidget* parent) : QWidget(parent), mList(new QListView), mMemory(dimLabel({})) {
     setAccessibleName(tr("History"));
     mList->setObjectName("steps");
     mList->setAccessibleName(tr("Steps of the document"));

@@ -14,9 +14,11 @@
 #include "app/message.h"
 #include "app/settings.h"
 #include "app/tools/tool_manager.h"
+#include "ui/conversions.h"
 #include "ui/panels/colour_popup.h"
 #include "ui/panels/panel_parts.h"
 #include "ui/panels/swatch_button.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 
@@ -55,7 +57,7 @@ PalettePanel::PalettePanel(SwatchStore& store, QWidget* parent)
     connect(&mRest, &QTimer::timeout, this, &PalettePanel::find);
     auto* column = panelColumn(this);
     column->addWidget(makePalettePart());
-    column->addWidget(panelLine());
+    column->addWidget(separatorLine());
     column->addWidget(makeSwatchPart());
     column->addStretch(1);
     connect(mPopup, &ColourPopup::previewed, this, &PalettePanel::preview);
@@ -82,13 +84,13 @@ QWidget* PalettePanel::makePalettePart() {
     mColours->setFocusPolicy(Qt::StrongFocus);
     connect(mColours, &QSpinBox::valueChanged, this, &PalettePanel::findSoon);
     auto* head = new QHBoxLayout;
-    head->addWidget(panelHeading(tr("Dominant colours")), 1);
+    head->addWidget(headingLabel(tr("Dominant colours")), 1);
     head->addWidget(mColours);
     column->addLayout(head);
     mEntries = new QGridLayout;
     mEntries->setSpacing(4);
     column->addLayout(mEntries);
-    column->addWidget(mHint = panelHint({}));
+    column->addWidget(mHint = dimLabel({}));
     mHint->setObjectName("hint");
     return part;
 }
@@ -98,12 +100,12 @@ QWidget* PalettePanel::makeSwatchPart() {
     auto* column = new QVBoxLayout(part);
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(8);
-    column->addWidget(panelHeading(tr("Swatches")));
+    column->addWidget(headingLabel(tr("Swatches")));
     mSwatches = new QGridLayout;
     mSwatches->setSpacing(2);
     mSwatches->setColumnStretch(kSwatchColumns, 1);
     column->addLayout(mSwatches);
-    column->addWidget(mSwatchHint = panelHint(tr(
+    column->addWidget(mSwatchHint = dimLabel(tr(
                           "Colours that you keep, for all documents. A click makes one the tools' colour.")));
     auto* add = panelButton(tr("Keep"), tr("Keep the tools' colour as a swatch"), "keep");
     auto* import = panelButton(tr("Import…"), tr("Add the swatches of a .gpl file"), "import");

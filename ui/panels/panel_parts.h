@@ -5,21 +5,13 @@
 #include <QString>
 #include <glm/vec3.hpp>
 
-class QAction;
-class QFrame;
 class QGridLayout;
-class QLabel;
 class QPushButton;
-class QToolButton;
 class QVBoxLayout;
 class QWidget;
 
 namespace tessera {
 
-QLabel* panelHeading(const QString& text);
-// Explains; wraps.
-QLabel* panelHint(const QString& text);
-QFrame* panelLine();
 // The column of a whole panel, with its margins.
 QVBoxLayout* panelColumn(QWidget* panel);
 // A button of a group in which none stands out. It leaves the keys to the canvas when clicked.
@@ -27,9 +19,6 @@ QPushButton* panelButton(const QString& text, const QString& tip, const char* ob
 // Puts buttons into rows of the same width.
 void fillGrid(QGridLayout* grid, std::initializer_list<QWidget*> widgets, int columns);
 
-// Between colours of documents (gamma-encoded sRGB, any value) and of the screen.
-QColor toQColor(glm::dvec3 srgb);
-glm::dvec3 toSrgb(const QColor& colour);
 // "#rrggbb".
 QString hexText(glm::dvec3 srgb);
 

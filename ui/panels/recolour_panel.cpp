@@ -17,19 +17,13 @@
 #include "ui/panels/colour_field.h"
 #include "ui/panels/gesture_slider.h"
 #include "ui/panels/panel_parts.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 
 namespace {
 
 constexpr double kMostFeatherPx = 200;
-
-QVBoxLayout* plainColumn(QWidget* part) {
-    auto* column = new QVBoxLayout(part);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(8);
-    return column;
-}
 
 // By area and opacity, as the session has them at hand.
 glm::dvec3 meanOf(const PatchColours& colours, const PatchSet& set) {
@@ -45,22 +39,22 @@ glm::dvec3 meanOf(const PatchColours& colours, const PatchSet& set) {
 
 }  // namespace
 
-RecolourPanel::RecolourPanel(QWidget* parent) : QWidget(parent) {
+RecolourPanel::RecolourPanel(QWidget* parent) : LazyPanel(parent) {
     setAccessibleName(tr("Recolour"));
     auto* column = panelColumn(this);
     column->addWidget(makeToolColours());
-    column->addWidget(panelLine());
-    column->addWidget(mHint = panelHint({}));
+    column->addWidget(separatorLine());
+    column->addWidget(mHint = dimLabel({}));
     mHint->setObjectName("hint");
     mEdits = new QWidget;
-    auto* edits = plainColumn(mEdits);
+    auto* edits = partColumn(mEdits);
     edits->addWidget(makeReplacePart());
     edits->addWidget(makeSliders());
     edits->addWidget(makeButtons());
     column->addWidget(mEdits);
     column->addStretch(1);
     connectReplace();
-    refresh();
+    refreshNow();
 }
 
 RecolourPanel::~RecolourPanel() = default;
@@ -80,8 +74,8 @@ QWidget* RecolourPanel::makeToolColours() {
     exchange->setToolTip(tr("Exchange the two colours"));
     exchange->setAccessibleName(tr("Exchange the two colours"));
     exchange->setFocusPolicy(Qt::TabFocus);
-    grid->addWidget(panelHint(tr("Colour")), 0, 0);
-    grid->addWidget(panelHint(tr("Second")), 0, 2);
+    grid->addWidget(dimLabel(tr("Colour")), 0, 0);
+    grid->addWidget(dimLabel(tr("Second")), 0, 2);
     grid->addWidget(mColour, 1, 0);
     grid->addWidget(exchange, 1, 1);
     grid->addWidget(mSecondColour, 1, 2);
@@ -108,7 +102,7 @@ QWidget* RecolourPanel::makeReplacePart() {
     auto* use =
         panelButton(tr("Use colour"), tr("Give the selection the colour above; shading stays"), "use");
     connect(use, &QPushButton::clicked, this, [this] { replaceBy(mColour->colour()); });
-    grid->addWidget(panelHint(tr("Selection; a new colour keeps its shading")), 0, 0, 1, 2);
+    grid->addWidget(dimLabel(tr("Colour of the selection; its shading stays")), 0, 0, 1, 2);
     grid->addWidget(mMean, 1, 0);
     grid->addWidget(use, 1, 1);
     return part;
@@ -260,7 +254,7 @@ void RecolourPanel::setSession(DocumentSession* session) {
         });
         connect(session, &QObject::destroyed, this, [this] { setSession(nullptr); });
     }
-    refresh();
+    refreshNow();
 }
 
 void RecolourPanel::setToolOptions(ToolManager& tools) {
@@ -353,20 +347,7 @@ void RecolourPanel::say(const Result<void>& result) {
     if (!result) emit said(asSentence(result.error().message));
 }
 
-void RecolourPanel::showEvent(QShowEvent* event) {
-    QWidget::showEvent(event);
-    if (mStale) refresh();
-}
-
-void RecolourPanel::refreshSoon() {
-    if (!std::exchange(mStale, true) && isVisible())
-        QTimer::singleShot(0, this, [this] {
-            if (mStale) refresh();
-        });
-}
-
 void RecolourPanel::refresh() {
-    mStale = false;
     const bool hasPatches = mSession && !mSession->selection().patches().empty();
     mEdits->setEnabled(hasPatches);
     mHint->setVisible(!hasPatches);

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <QPointer>
-#include <QWidget>
 #include <array>
 #include <optional>
 
 #include "app/colour_adjustment.h"
 #include "app/edit_actions.h"
 #include "app/recolour_gesture.h"
+#include "ui/panels/lazy_panel.h"
 
 class QDoubleSpinBox;
 class QGridLayout;
@@ -22,7 +22,7 @@ class ColourField;
 class GestureSlider;
 class ToolManager;
 
-class RecolourPanel : public QWidget {
+class RecolourPanel : public LazyPanel {
     Q_OBJECT
 
   public:
@@ -37,9 +37,6 @@ class RecolourPanel : public QWidget {
   signals:
     // One sentence for the person.
     void said(const QString& text);
-
-  protected:
-    void showEvent(QShowEvent* event) override;
 
   private:
     // The sliders, by what they change.
@@ -70,14 +67,12 @@ class RecolourPanel : public QWidget {
 
     void setColours(glm::dvec3 colour, glm::dvec3 second);
     void showOptions();
-    void refreshSoon();
-    void refresh();
+    void refresh() override;
 
     QPointer<DocumentSession> mSession;
     ToolManager* mTools = nullptr;
     std::optional<ColourAdjustment> mAdjustment;
     std::optional<RecolourGesture> mReplace;
-    bool mStale = false;
 
     ColourField* mColour = nullptr;
     ColourField* mSecondColour = nullptr;

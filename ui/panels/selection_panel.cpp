@@ -14,6 +14,7 @@
 #include "app/selection_actions.h"
 #include "app/tools/tool_manager.h"
 #include "ui/panels/panel_parts.h"
+#include "ui/widget_parts.h"
 
 namespace tessera {
 
@@ -32,6 +33,7 @@ SelectMode modeOf(Qt::KeyboardModifiers modifiers) {
 StoredList::StoredList(QWidget* parent) : QListWidget(parent) {
     setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed);
     setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
+    setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     setToolTip(tr("Click to select; Shift adds, Alt subtracts. F2 renames, Delete removes"));
 }
 
@@ -70,16 +72,16 @@ void StoredList::keyPressEvent(QKeyEvent* event) {
     }
 }
 
-SelectionPanel::SelectionPanel(QWidget* parent) : QWidget(parent), mCounts(new QLabel) {
+SelectionPanel::SelectionPanel(QWidget* parent) : LazyPanel(parent), mCounts(new QLabel) {
     setAccessibleName(tr("Selection"));
     auto* column = panelColumn(this);
     mCounts->setObjectName("counts");
     mCounts->setWordWrap(true);
     column->addWidget(mCounts);
     column->addWidget(makeButtons());
-    column->addWidget(panelLine());
+    column->addWidget(separatorLine());
     column->addWidget(makeStoredPart(), 1);
-    refresh();
+    refreshNow();
 }
 
 QWidget* SelectionPanel::makeButtons() {
@@ -117,7 +119,7 @@ QWidget* SelectionPanel::makeStoredPart() {
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(6);
     auto* head = new QHBoxLayout;
-    head->addWidget(panelHeading(tr("Stored selections")), 1);
+    head->addWidget(headingLabel(tr("Stored selections")), 1);
     QPushButton* storeButton =
         panelButton(tr("Store"), tr("Keep the selection in the document, under a name"), "store");
     mNeedSelection.push_back(storeButton);
@@ -127,7 +129,7 @@ QWidget* SelectionPanel::makeStoredPart() {
     mStored->setObjectName("stored");
     mStored->setAccessibleName(tr("Stored selections"));
     column->addWidget(mStored, 1);
-    mStoredHint = panelHint(tr("Store a selection to come back to it later; it is saved with the document."));
+    mStoredHint = dimLabel(tr("Store a selection to come back to it later; it is saved with the document."));
     column->addWidget(mStoredHint);
     connect(storeButton, &QPushButton::clicked, this, &SelectionPanel::store);
     connect(mStored, &QListWidget::itemChanged, this, &SelectionPanel::rename);
@@ -155,24 +157,10 @@ void SelectionPanel::setSession(DocumentSession* session) {
         connect(session, &QObject::destroyed, this, [this] { setSession(nullptr); });
     }
     fillStored();
-    refresh();
-}
-
-void SelectionPanel::showEvent(QShowEvent* event) {
-    QWidget::showEvent(event);
-    if (mStale) refresh();
-}
-
-void SelectionPanel::refreshSoon() {
-    // A marquee changes the selection with each move: counted once a turn of the event loop.
-    if (!std::exchange(mStale, true) && isVisible())
-        QTimer::singleShot(0, this, [this] {
-            if (mStale) refresh();
-        });
+    refreshNow();
 }
 
 void SelectionPanel::refresh() {
-    mStale = false;
     const bool hasMesh = mSession && mSession->hasMesh();
     const bool hasPatches = hasMesh && !mSession->selection().patches().empty();
     for (QPushButton* button : mNeedMesh) button->setEnabled(hasMesh);

@@ -3,9 +3,9 @@
 
 #include <QListWidget>
 #include <QPointer>
-#include <QWidget>
 
 #include "app/selection.h"
+#include "ui/panels/lazy_panel.h"
 
 class QLabel;
 class QLineEdit;
@@ -34,7 +34,7 @@ class StoredList : public QListWidget {
     void keyPressEvent(QKeyEvent* event) override;
 };
 
-class SelectionPanel : public QWidget {
+class SelectionPanel : public LazyPanel {
     Q_OBJECT
 
   public:
@@ -49,14 +49,10 @@ class SelectionPanel : public QWidget {
     // One sentence for the person.
     void said(const QString& text);
 
-  protected:
-    void showEvent(QShowEvent* event) override;
-
   private:
     QWidget* makeButtons();
     QWidget* makeStoredPart();
-    void refreshSoon();
-    void refresh();
+    void refresh() override;
     void fillStored();
     void store();
     void rename(QListWidgetItem* item);
@@ -65,7 +61,6 @@ class SelectionPanel : public QWidget {
 
     QPointer<DocumentSession> mSession;
     const ToolManager* mTools = nullptr;
-    bool mStale = false;
     QLabel* mCounts;
     std::vector<QPushButton*> mNeedMesh;       // what can be used where there are patches
     std::vector<QPushButton*> mNeedSelection;  // and where some are selected

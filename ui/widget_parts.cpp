@@ -1,0 +1,36 @@
+// See widget_parts.h.
+#include "ui/widget_parts.h"
+
+#include <QFrame>
+#include <QLabel>
+#include <QVBoxLayout>
+
+namespace tessera {
+
+QLabel* headingLabel(const QString& text) {
+    auto* label = new QLabel(text);
+    label->setProperty("role", "heading");
+    return label;
+}
+
+QLabel* dimLabel(const QString& text) {
+    auto* label = new QLabel(text);
+    label->setProperty("role", "dim");
+    label->setWordWrap(true);
+    return label;
+}
+
+QFrame* separatorLine() {
+    auto* frame = new QFrame;
+    frame->setProperty("role", "line");
+    return frame;
+}
+
+QVBoxLayout* partColumn(QWidget* part) {
+    auto* column = new QVBoxLayout(part);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(8);
+    return column;
+}
+
+}  // namespace tessera
