@@ -25,7 +25,8 @@ size_t PatchMesh::bytesBeyond(const PatchMesh& other) const {
     };
     return mConnectivity.bytesBeyond(other.mConnectivity) + mPositions.bytesBeyond(other.mPositions) +
            mCurves.bytesBeyond(other.mCurves) + mInteriors.bytesBeyond(other.mInteriors) +
-           mSplines.bytesBeyond(other.mSplines, ofSpline) + mAttributes.bytesBeyond(other.mAttributes) + ofVector(mSmoothJoins);
+           mSplines.bytesBeyond(other.mSplines, ofSpline) + mAttributes.bytesBeyond(other.mAttributes) +
+           ofVector(mSmoothJoins);
 }
 
 BezierCurve toPixels(const std::array<LatticePoint, 4>& c) {
@@ -69,6 +70,13 @@ void PatchMesh::setConnectivity(HalfedgeMesh connectivity) {
     grow(mInteriors, mConnectivity.faceCapacity());
     grow(mSplines, mConnectivity.faceCapacity());
     grow(mAttributes, mConnectivity.faceCapacity());
+}
+
+void PatchMesh::setSplines(std::span<const PatchId> patches, std::vector<PatchSpline> splines) {
+    std::vector<size_t> indices;
+    indices.reserve(patches.size());
+    for (const PatchId p : patches) indices.push_back(p.index);
+    mSplines.replace(indices, splines);
 }
 
 std::array<LatticePoint, 4> PatchMesh::controlPoints(HalfedgeId h) const {
