@@ -231,6 +231,7 @@ PatchSet Repainter::apply(PatchMesh& mesh, const Repaint& repaint, Precision pre
     });
     PatchSet changed;
     std::vector<PatchSpline> fresh;
+    fresh.reserve(mPatches.size());
     for (size_t i = 0; i < mPatches.size(); ++i) {
         if (!splines[i]) continue;
         fresh.push_back(std::move(*splines[i]));

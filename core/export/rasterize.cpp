@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -192,9 +193,22 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
     fine.scale *= n;
     fine.width *= n;
     fine.height *= n;
-    const ScanConversion scan(mesh, fine);
-    const EdgeBlur blur(mesh, options.sharpen);
-    const std::vector<Tile> tiles = makeTiles(scan, kTileWidth * n, kTileHeight * n);
+    // Neither of the two is parallel throughout, so they are made side by side.
+    std::optional<ScanConversion> scanned;
+    std::optional<EdgeBlur> blurred;
+    std::vector<Tile> tiles;
+    parallelFor(2, 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            if (i > 0) {
+                blurred.emplace(mesh, options.sharpen);
+                continue;
+            }
+            scanned.emplace(mesh, fine);
+            tiles = makeTiles(*scanned, kTileWidth * n, kTileHeight * n);
+        }
+    });
+    const ScanConversion& scan = *scanned;
+    const EdgeBlur& blur = *blurred;
     std::atomic<size_t> done{0};
     std::atomic<bool> stop{false};
     parallelFor(tiles.size(), 1, [&](size_t begin, size_t end) {
