@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "app/tools/colour_at.h"
-#include "core/edit/brush.h"
 #include "core/edit/drag_colour.h"
 
 namespace tessera {
@@ -38,7 +37,14 @@ ToolOverlay EyedropperTool::overlay() const {
 
 void BrushTool::dragStarted(const ToolEvent&) {
     mStroke.clear();
-    begin(mEdit, QObject::tr("Brush"));
+    if (!begin(mEdit, QObject::tr("Brush"))) return;
+    const ToolOptions& o = options();
+    mPainting.emplace(mEdit->start(), session().query(),
+                      BrushOptions{.radiusPx = o.brushRadiusPx,
+                                   .hardness = o.brushHardness,
+                                   .colour = o.colour,
+                                   .strength = o.brushStrength,
+                                   .keepShading = o.brushKeepsShading});
 }
 
 void BrushTool::dragged(const ToolEvent& event) {
@@ -48,19 +54,12 @@ void BrushTool::dragged(const ToolEvent& event) {
     const double step = std::max(.1 * o.brushRadiusPx, event.pxPerScreenPx);
     if (!mEdit || (!mStroke.empty() && glm::distance(mStroke.back(), event.point) < step)) return;
     mStroke.push_back(event.point);
-    report(mEdit->preview([&](PatchMesh& mesh) {
-        return brush(mesh, session().query(), mStroke,
-                     {.radiusPx = o.brushRadiusPx,
-                      .hardness = o.brushHardness,
-                      .colour = o.colour,
-                      .strength = o.brushStrength,
-                      .keepShading = o.brushKeepsShading});
-    }));
+    report(mEdit->preview([&](PatchMesh& mesh) { return mPainting->draw(mesh, mStroke); }));
 }
 
 void BrushTool::dropped(const ToolEvent&) {
     if (mEdit) mEdit->commit();
-    mEdit.reset();
+    abandoned();
 }
 
 ToolOverlay BrushTool::overlay() const {

@@ -6,6 +6,7 @@
 #include "app/edit_session.h"
 #include "app/recolour_gesture.h"
 #include "app/tools/tool.h"
+#include "core/edit/brush.h"
 
 namespace tessera {
 
@@ -46,12 +47,16 @@ class BrushTool : public DragTool {
     void dragStarted(const ToolEvent& event) override;
     void dragged(const ToolEvent& event) override;
     void dropped(const ToolEvent& event) override;
-    void abandoned() override { mEdit.reset(); }
+    void abandoned() override {
+        mPainting.reset();
+        mEdit.reset();
+    }
 
   private:
     std::optional<glm::dvec2> mPointer;
     std::vector<glm::dvec2> mStroke;
     std::optional<EditSession> mEdit;
+    std::optional<BrushStroke> mPainting;  // as the options were at the press
 };
 
 // Carries the colour of a patch from where it is taken to where it is dropped, as on a gradient mesh; a click

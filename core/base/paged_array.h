@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "core/base/check.h"
@@ -29,6 +31,29 @@ class PagedArray {
         std::shared_ptr<Page>& page = mPages[i >> kPageBits];
         if (page.use_count() != 1) page = std::make_shared<Page>(*page);
         return page->at[i & (kPageSize - 1)];
+    }
+
+    // Sets the elements of ascending, different `indices` to `values`, which are moved. Of a page that
+    // another array shares only the others are copied first.
+    void replace(std::span<const size_t> indices, std::span<T> values) {
+        TESSERA_CHECK(indices.size() == values.size());
+        for (size_t first = 0, end = 0; first < indices.size(); first = end) {
+            const size_t number = indices[first] >> kPageBits;
+            while (end < indices.size() && indices[end] >> kPageBits == number) ++end;
+            std::shared_ptr<Page>& page = mPages[number];
+            if (page.use_count() != 1) {
+                const auto fresh = std::make_shared<Page>();
+                for (size_t i = 0, next = first; i < kPageSize; ++i) {
+                    if (next < end && (indices[next] & (kPageSize - 1)) == i)
+                        ++next;
+                    else
+                        fresh->at[i] = page->at[i];
+                }
+                page = fresh;
+            }
+            for (size_t i = first; i < end; ++i)
+                page->at[indices[i] & (kPageSize - 1)] = std::move(values[i]);
+        }
     }
 
     void pushBack(const T& value) {

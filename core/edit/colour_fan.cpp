@@ -32,19 +32,18 @@ std::vector<HalfedgeId> fanOf(const PatchMesh& mesh, HalfedgeId side) {
     return fan;
 }
 
-PatchSpline withCornersRaised(const PatchSpline& spline, ColourBasis basis, CornerValues values) {
+PatchSpline withCornersRaised(PatchSpline spline, ColourBasis basis, CornerValues values) {
     float* planes[3] = {values[0].data(), values[1].data(), values[2].data()};
     fromWorking(basis, planes, 3);
-    PatchSpline result = spline;
     constexpr double kSlope = .5 / kDomainHeight;
     for (int c = 0; c < 3; ++c) {
         const auto& [a, b, w] = values[size_t(c)];
-        float* k = result.coefficients.data() + result.offset(c);
+        float* k = spline.coefficients.data() + spline.offset(c);
         k[0] += a;
         k[1] += b - a;
         k[2] += float(double(w) / kDomainHeight - kSlope * (double(a) + double(b)));
     }
-    return result;
+    return spline;
 }
 
 }  // namespace tessera

@@ -18,6 +18,6 @@ using CornerValues = std::array<std::array<float, 3>, 3>;
 
 // Adds what is linear between values at the corners. Along an edge that two patches share, both get the same
 // where they get the same at its ends.
-PatchSpline withCornersRaised(const PatchSpline& spline, ColourBasis basis, CornerValues values);
+PatchSpline withCornersRaised(PatchSpline spline, ColourBasis basis, CornerValues values);
 
 }  // namespace tessera

@@ -15,6 +15,8 @@ namespace {
 
 // What an affine change in the place of a curved one may be off, on a few points: less than a refit may.
 constexpr double kLinearMean = .3 / 255, kLinearMost = 1.2 / 255;
+// What such a change with one linear in place may be off on all points.
+constexpr double kPlacedMean = .4 / 255, kPlacedMost = 2.0 / 255;
 // Of so many patches what a refit needs is kept: 35 kB each.
 constexpr size_t kMostKept = 2000;
 // Smaller changes are none.
@@ -101,7 +103,6 @@ struct Repainter::Patch {
             colours.emplace_back(samples[i].srgb, evaluate(shape, SplineRefit::barycentrics()[i]));
             alphas.push_back(samples[i].alpha);
         }
-        refit.emplace(mesh.spline(id));
     }
 
     void forget() {
@@ -153,22 +154,34 @@ Repainter::Repainter(PatchMesh start, PatchSet patches, PaintWeight weight)
 }
 
 Repainter::Spline Repainter::refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint) {
+    patch.probe(mesh);
     patch.sample(mesh);
     const size_t n = patch.colours.size();
-    std::vector<float> planes(n * kMaxChannels);
+    std::vector<glm::dvec3> colours(n), targets(n);
     double most = 0;
     for (size_t i = 0; i < n; ++i) {
-        const glm::dvec3 colour = patch.colours[i].whole, full = painted(repaint, patch.colours[i]);
-        const glm::dvec3 mixture = patch.even ? full : glm::mix(colour, full, patch.weights[i]);
-        most = std::max(most, largest(mixture - colour));
-        for (int c = 0; c < 3; ++c) planes[size_t(c) * n + i] = float(mixture[c] * patch.alphas[i]);
-        planes[3 * n + i] = float(patch.alphas[i]);
+        colours[i] = patch.colours[i].whole;
+        const glm::dvec3 full = painted(repaint, patch.colours[i]);
+        targets[i] = patch.even ? full : glm::mix(colours[i], full, patch.weights[i]);
+        most = std::max(most, largest(targets[i] - colours[i]));
     }
     if (most < kNoChange) return std::nullopt;
+    if (mesh.channels() == 3) {
+        const AffineColour guess = patch.even && !repaint.affine ? patch.tangent(repaint) : AffineColour{};
+        if (const auto placed = PlacedChange::nearest(guess, colours, targets, kPlacedMean, kPlacedMost))
+            return withCornersRaised(mixed(mesh.spline(patch.id), 3, mesh.colourBasis(), placed->change),
+                                     mesh.colourBasis(), placed->corners);
+    }
+    std::vector<float> planes(n * kMaxChannels);
+    for (size_t i = 0; i < n; ++i) {
+        for (int c = 0; c < 3; ++c) planes[size_t(c) * n + i] = float(targets[i][c] * patch.alphas[i]);
+        planes[3 * n + i] = float(patch.alphas[i]);
+    }
     float* pointers[kMaxChannels];
     for (size_t c = 0; c < kMaxChannels; ++c) pointers[c] = planes.data() + c * n;
     fromWorking(mesh.colourBasis(), pointers, n);
     const std::vector<double> values(planes.begin(), planes.end());
+    if (!patch.refit) patch.refit.emplace(mesh.spline(patch.id));
     return patch.refit->fit(values, mesh.channels());
 }
 
@@ -217,11 +230,14 @@ PatchSet Repainter::apply(PatchMesh& mesh, const Repaint& repaint, Precision pre
         }
     });
     PatchSet changed;
+    std::vector<PatchSpline> fresh;
+    fresh.reserve(mPatches.size());
     for (size_t i = 0; i < mPatches.size(); ++i) {
         if (!splines[i]) continue;
-        mesh.setSpline(mPatches[i], std::move(*splines[i]));
+        fresh.push_back(std::move(*splines[i]));
         changed.push_back(mPatches[i]);
     }
+    mesh.setSplines(changed, std::move(fresh));
     return changed;
 }
 

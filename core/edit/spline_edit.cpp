@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <numeric>
 
 #include "core/mesh/newton_basis.h"
 
@@ -61,25 +62,32 @@ AffineColour tinted(glm::dvec3 colour, double strength) {
 
 PatchSpline mixed(const PatchSpline& spline, int channels, ColourBasis basis, const AffineColour& change) {
     const Mix mix = mixOf(channels, basis, change);
+    const auto count = size_t(channels);
     PatchSpline result;
     result.sites = spline.sites;
     result.centres = spline.centres;
-    result.coefficients.reserve(spline.coefficients.size());
-    for (size_t c = 0; c < size_t(channels); ++c) {
-        int terms = 0;
-        for (size_t from = 0; from < size_t(channels); ++from)
-            if (mix[c][from] != 0) terms = std::max<int>(terms, spline.terms[from]);
-        result.terms[c] = uint8_t(terms);
-        std::array<double, kPolynomials + 255> sum{};
+    std::array<size_t, kMaxChannels> lengths{};
+    for (size_t c = 0; c < count; ++c) {
+        for (size_t from = 0; from < count; ++from)
+            if (mix[c][from] != 0) result.terms[c] = std::max(result.terms[c], spline.terms[from]);
+        lengths[c] = size_t(kPolynomials) + result.terms[c];
+    }
+    result.coefficients.resize(std::accumulate(lengths.begin(), lengths.end(), size_t{0}));
+    float* out = result.coefficients.data();
+    std::array<double, kPolynomials + 255> sum;
+    for (size_t c = 0; c < count; ++c) {
+        std::fill_n(sum.begin(), lengths[c], 0.0);
         sum[0] = mix[c][kMaxChannels];
-        for (size_t from = 0; from < size_t(channels); ++from) {
-            if (mix[c][from] == 0) continue;
-            const float* k = spline.coefficients.data() + spline.offset(int(from));
-            for (size_t i = 0; i < size_t(kPolynomials + spline.terms[from]); ++i)
-                sum[i] += mix[c][from] * double(k[i]);
+        const float* k = spline.coefficients.data();
+        for (size_t from = 0; from < count; ++from) {
+            const size_t own = size_t(kPolynomials) + spline.terms[from];
+            const double share = mix[c][from];
+            if (share != 0)
+                for (size_t i = 0; i < own; ++i) sum[i] += share * double(k[i]);
+            k += own;
         }
-        for (size_t i = 0; i < size_t(kPolynomials + terms); ++i)
-            result.coefficients.push_back(float(sum[i]));
+        out = std::transform(sum.begin(), sum.begin() + long(lengths[c]), out,
+                             [](double v) { return float(v); });
     }
     return result;
 }
@@ -189,6 +197,52 @@ void addSites(const MatrixXd& left, std::vector<uint8_t>& sites) {
 }
 
 }  // namespace
+
+std::optional<PlacedChange> PlacedChange::nearest(const AffineColour& guess,
+                                                  std::span<const glm::dvec3> colours,
+                                                  std::span<const glm::dvec3> targets, double mean,
+                                                  double most) {
+    const std::vector<Barycentric>& at = SplineRefit::barycentrics();
+    const VectorXd& weights = pointWeights();
+    glm::dvec3 middle(0);
+    for (const glm::dvec3& c : colours) middle += c / double(colours.size());
+    // What is left of the guess, as a linear function of a colour's difference from the middle and of place.
+    using Row = Eigen::Matrix<double, 6, 1>;
+    const auto rowOf = [&](size_t i) {
+        const glm::dvec3 off = colours[i] - middle;
+        return Row(off.x, off.y, off.z, at[i].x, at[i].y, at[i].z);
+    };
+    // Where a patch has no colours to tell from, the guess stays.
+    constexpr double kRidge = 1e-4;
+    Eigen::Matrix<double, 6, 6> normal = Row(kRidge, kRidge, kRidge, 0, 0, 0).asDiagonal();
+    Eigen::Matrix<double, 6, 3> right = Eigen::Matrix<double, 6, 3>::Zero();
+    for (size_t i = 0; i < colours.size(); ++i) {
+        const Row row = rowOf(i);
+        const Row weighted = weights(Eigen::Index(i)) * row;
+        const glm::dvec3 left = targets[i] - guess(colours[i]);
+        normal.noalias() += weighted * row.transpose();
+        for (int c = 0; c < 3; ++c) right.col(c) += left[c] * weighted;
+    }
+    const Eigen::Matrix<double, 6, 3> found = normal.llt().solve(right);
+    PlacedChange result{guess, {}};
+    for (int c = 0; c < 3; ++c) {
+        for (int from = 0; from < 3; ++from) result.change.matrix[from][c] += found(from, c);
+        for (int corner = 0; corner < 3; ++corner)
+            result.corners[size_t(c)][size_t(corner)] = float(found(3 + corner, c));
+    }
+    result.change.offset -= (result.change.matrix - guess.matrix) * middle;
+    double sum = 0;
+    for (size_t i = 0; i < colours.size(); ++i) {
+        glm::dvec3 off = result.change(colours[i]) - targets[i];
+        for (int c = 0; c < 3; ++c) {
+            for (int corner = 0; corner < 3; ++corner) off[c] += at[i][corner] * found(3 + corner, c);
+            if (!(std::abs(off[c]) <= most)) return std::nullopt;
+            sum += std::abs(off[c]);
+        }
+    }
+    if (sum > mean * 3 * double(colours.size())) return std::nullopt;
+    return result;
+}
 
 std::vector<uint8_t> usualSites() {
     std::vector<uint8_t> sites;

@@ -5,9 +5,11 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/edit/colour_fan.h"
 #include "core/edit/colour_samples.h"
 #include "core/mesh/colour_basis.h"
 #include "core/mesh/tps.h"
@@ -50,6 +52,17 @@ class SplineRefit {
   private:
     struct System;
     std::unique_ptr<System> mSystem;
+};
+
+// A change of colours together with what is linear in place.
+struct PlacedChange {
+    AffineColour change;
+    CornerValues corners{};  // added after it
+
+    // The one nearest to a repainting that makes `targets` of a patch's `colours` at SplineRefit::points(),
+    // near a guess; none where it is farther off than `mean` on the mean of the channels, or `most` anywhere.
+    static std::optional<PlacedChange> nearest(const AffineColour& guess, std::span<const glm::dvec3> colours,
+                                               std::span<const glm::dvec3> targets, double mean, double most);
 };
 
 // The places among the sites that are nearest to the default centres, the corners first.

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -27,8 +28,10 @@ bool leftOut(const PatchAttributes& a, const RasterizeOptions& options) {
 // Pixels of one patch with their parameters, as the runs that they came in.
 struct Batch {
     static constexpr size_t kSize = PatchInverse::kMaxBatch;
+    static_assert(kSize <= kMaxBlurPoints);
 
     PatchId patch;
+    glm::dvec2 centre{0};  // of the patch
     size_t count = 0;
     std::vector<PixelRun> runs;
     alignas(32) float x[kSize], y[kSize];  // relative to the patch
@@ -78,6 +81,7 @@ void processTile(const PatchMesh& mesh, const ScanConversion& scan, const Tile& 
                   runs);
         if (runs.empty()) continue;
         const PatchInverse inverse(mesh.controlPoints(batch.patch), tolerance);
+        batch.centre = inverse.centre();
         const auto flush = [&] {
             inverse.solve(batch.x, batch.y, batch.count, batch.v, batch.w);
             emit(batch);
@@ -122,12 +126,16 @@ inline void copyRun(const float* from, size_t n, float* to) {
 // Adds what blurred features do to the colours of a batch.
 void blurBatch(const PatchMesh& mesh, const EdgeBlur& blur, const PixelGrid& grid, const Batch& batch,
                float* const* colours) {
-    std::array<glm::dvec2, Batch::kSize> points;
+    alignas(32) float x[Batch::kSize], y[Batch::kSize];
     size_t i = 0;
-    for (const PixelRun& run : batch.runs)
-        for (int column = run.begin; column < run.end; ++column)
-            points[i++] = {grid.centreX(column), grid.centreY(run.row)};
-    addBlur(mesh, blur, batch.patch, {points.data(), batch.count}, colours);
+    for (const PixelRun& run : batch.runs) {
+        const auto rowY = float(grid.centreY(run.row) - batch.centre.y);
+        for (int column = run.begin; column < run.end; ++column, ++i) {
+            x[i] = float(grid.centreX(column) - batch.centre.x);
+            y[i] = rowY;
+        }
+    }
+    addBlur(mesh, blur, batch.patch, batch.centre, x, y, batch.count, colours);
 }
 
 // Evaluates a batch's colours and writes them into `image`, whose pixel (0, 0) is the view's (x0, y0).
@@ -185,9 +193,22 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
     fine.scale *= n;
     fine.width *= n;
     fine.height *= n;
-    const ScanConversion scan(mesh, fine);
-    const EdgeBlur blur(mesh, options.sharpen);
-    const std::vector<Tile> tiles = makeTiles(scan, kTileWidth * n, kTileHeight * n);
+    // Neither of the two is parallel throughout, so they are made side by side.
+    std::optional<ScanConversion> scanned;
+    std::optional<EdgeBlur> blurred;
+    std::vector<Tile> tiles;
+    parallelFor(2, 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            if (i > 0) {
+                blurred.emplace(mesh, options.sharpen);
+                continue;
+            }
+            scanned.emplace(mesh, fine);
+            tiles = makeTiles(*scanned, kTileWidth * n, kTileHeight * n);
+        }
+    });
+    const ScanConversion& scan = *scanned;
+    const EdgeBlur& blur = *blurred;
     std::atomic<size_t> done{0};
     std::atomic<bool> stop{false};
     parallelFor(tiles.size(), 1, [&](size_t begin, size_t end) {

@@ -27,9 +27,6 @@ HalfedgeId successor(const PatchMesh& mesh, HalfedgeId h, const std::vector<uint
     return next;
 }
 
-// How far the parameter of a foot on an even curve can be from its share of the base.
-constexpr double kEvenSpan = .3;
-
 // Newton's method on (B(t) - at) . B'(t) = 0, inside [lo, hi].
 double refined(const BezierCurve& curve, glm::dvec2 at, double t, double lo, double hi) {
     // The curve in powers of t costs a third of de Casteljau's algorithm.
@@ -254,15 +251,17 @@ bool EdgeBlur::findFoot(const Feature& f, glm::dvec2 at, Foot& foot) {
         if (best >= square(foot.distance + f.flatness)) return false;
     }
     const double span = f.even ? kEvenSpan : 1.0 / kSegments;
+    Foot found{0, kNearer * foot.distance, {}};
     bool nearer = false;  // The start, too: Newton's method may leave for a worse place.
     for (const double candidate :
          {refined(f.curve, at, t, std::max(0.0, t - span), std::min(1.0, t + span)), t}) {
         const glm::dvec2 point = f.curve.at(candidate);
         const double distance = glm::distance(point, at);
-        if (distance >= foot.distance) continue;
-        foot = {candidate, distance, point};
+        if (distance >= found.distance) continue;
+        found = {candidate, distance, point};
         nearer = true;
     }
+    if (nearer) foot = found;
     return nearer;
 }
 
@@ -292,27 +291,16 @@ int EdgeBlur::sideOf(const Feature& f, const Reach& reach, PatchId p, glm::dvec2
     return cross(tangent, at - foot.point) > 0 ? 0 : 1;
 }
 
-void EdgeBlur::findNear(PatchId p, glm::dvec2 origin, const float* x, const float* y, size_t count,
-                        float* excess) const {
-    std::fill_n(excess, count, 1.F);
-    if (!inReach(p)) return;
-    for (size_t k = mFirst[p.index]; k < mFirst[p.index + 1]; ++k) {
-        const Feature& f = mFeatures[mReaches[k].feature];
-        constexpr double kSlack = .01;  // px, more than the rounding of single precision
-        const double limit = mChains[f.chain].reach + f.bend + kSlack;
-        const auto fromX = float(f.base.from.x - origin.x), fromY = float(f.base.from.y - origin.y);
-        const auto alongX = float(f.base.along.x), alongY = float(f.base.along.y),
-                   inverse = float(f.base.inverse), limit2 = float(limit * limit);
-        for (size_t i = 0; i < count; ++i) {
-            const float dx = x[i] - fromX, dy = y[i] - fromY;
-            float s = (dx * alongX + dy * alongY) * inverse;
-            s = s < 0 ? 0 : s;
-            s = s > 1 ? 1 : s;
-            const float offX = dx - s * alongX, offY = dy - s * alongY;
-            const float beyond = offX * offX + offY * offY - limit2;
-            excess[i] = beyond < excess[i] ? beyond : excess[i];
-        }
-    }
+bool EdgeBlur::termAt(PatchId p, const Reach& reach, glm::dvec2 at, const Foot& foot, BlurTerm& term) const {
+    const Feature& f = mFeatures[reach.feature];
+    const double sigma = f.sigmaAt(foot.t);
+    if (sigma <= 0 || foot.distance >= kBlurReach * sigma) return false;
+    const double weight = blurShare(foot.distance / sigma) * fade(f, foot.t, sigma);
+    if (weight <= 0) return false;
+    const int own = sideOf(f, reach, p, at, foot);
+    term = {float(weight), f.patches[size_t(own)], f.patches[size_t(1 - own)], f.domainAt(own, foot.t),
+            f.domainAt(1 - own, foot.t)};
+    return true;
 }
 
 int EdgeBlur::terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms>& out) const {
@@ -324,15 +312,8 @@ int EdgeBlur::terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms
         const Reach* nearest = nullptr;
         for (; i < end && mFeatures[mReaches[i].feature].chain == chainIndex; ++i)
             if (findFoot(mFeatures[mReaches[i].feature], at, foot)) nearest = &mReaches[i];
-        if (!nearest) continue;
-        const Feature& f = mFeatures[nearest->feature];
-        const double sigma = f.sigmaAt(foot.t);
-        if (sigma <= 0 || foot.distance >= kBlurReach * sigma) continue;
-        const double weight = blurShare(foot.distance / sigma) * fade(f, foot.t, sigma);
-        if (weight <= 0) continue;
-        const int own = sideOf(f, *nearest, p, at, foot);
-        const BlurTerm term{float(weight), f.patches[size_t(own)], f.patches[size_t(1 - own)],
-                            f.domainAt(own, foot.t), f.domainAt(1 - own, foot.t)};
+        BlurTerm term;
+        if (!nearest || !termAt(p, *nearest, at, foot, term)) continue;
         if (count < kMaxBlurTerms) {
             out[size_t(count++)] = term;
         } else {
@@ -355,57 +336,6 @@ void blurredColour(const PatchMesh& mesh, const EdgeBlur& blur, PatchId p, const
             out[c] += double(t.weight) * (evaluateSpline(mesh.spline(t.other), c, t.otherAt) -
                                           evaluateSpline(mesh.spline(t.own), c, t.ownAt));
         }
-    }
-}
-
-void addBlur(const PatchMesh& mesh, const EdgeBlur& blur, PatchId p, std::span<const glm::dvec2> points,
-             float* const* colours) {
-    if (!blur.inReach(p)) return;
-    struct Share {
-        PatchId patch;
-        uint32_t point;
-        float weight;
-        glm::vec2 at;
-    };
-    std::vector<Share> shares;
-    constexpr size_t kBatch = 256;
-    float x[kBatch], y[kBatch], value[kMaxChannels][kBatch];
-    for (size_t first = 0; first < points.size(); first += kBatch) {
-        const size_t n = std::min(kBatch, points.size() - first);
-        float* const excess = value[0];
-        for (size_t i = 0; i < n; ++i) {
-            x[i] = float(points[first + i].x - points[first].x);
-            y[i] = float(points[first + i].y - points[first].y);
-        }
-        blur.findNear(p, points[first], x, y, n, excess);
-        for (size_t i = 0; i < n; ++i) {
-            if (excess[i] >= 0) continue;
-            std::array<BlurTerm, kMaxBlurTerms> terms;
-            const int count = blur.terms(p, points[first + i], terms);
-            for (int k = 0; k < count; ++k) {
-                const BlurTerm& t = terms[size_t(k)];
-                shares.push_back({t.other, uint32_t(first + i), t.weight, t.otherAt});
-                shares.push_back({t.own, uint32_t(first + i), -t.weight, t.ownAt});
-            }
-        }
-    }
-    // Patch by patch, for the vector code; a point's shares keep their order.
-    std::stable_sort(shares.begin(), shares.end(),
-                     [](const Share& a, const Share& b) { return a.patch < b.patch; });
-    float* out[kMaxChannels];
-    for (int c = 0; c < kMaxChannels; ++c) out[c] = value[c];
-    for (size_t i = 0; i < shares.size();) {
-        size_t n = 0;
-        while (i + n < shares.size() && n < kBatch && shares[i + n].patch == shares[i].patch) {
-            x[n] = shares[i + n].at.x;
-            y[n] = shares[i + n].at.y;
-            ++n;
-        }
-        evaluateSplines(mesh.spline(shares[i].patch), mesh.channels(), x, y, n, out);
-        for (int c = 0; c < mesh.channels(); ++c)
-            for (size_t k = 0; k < n; ++k)
-                colours[c][shares[i + k].point] += shares[i + k].weight * value[c][k];
-        i += n;
     }
 }
 

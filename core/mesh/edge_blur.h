@@ -24,6 +24,10 @@ struct BlurTerm {
 
 constexpr int kMaxBlurTerms = 4;
 
+// Of a chain's features a later one is a point's nearest only where it is nearer by this factor: beside a
+// bend two share the vertex as their nearest point, and rounding must not choose between them.
+constexpr double kNearer = 1 - 1.0 / 2048;
+
 // An index over the blurred features of one state of a mesh. A chain of features (a run of feature edges
 // through vertices that have two of them) gives a point at most one term.
 class EdgeBlur {
@@ -41,11 +45,6 @@ class EdgeBlur {
     // The terms at image point `at` of patch p, in an order that depends on nothing else; returns how many.
     // Where more than kMaxBlurTerms chains are near, those of the largest weights. Thread-safe.
     int terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms>& out) const;
-
-    // Sets excess[i] below 0 wherever the point origin + (x[i], y[i]) of patch p may have terms: a quick test
-    // for many points, wrong on the safe side.
-    void findNear(PatchId p, glm::dvec2 origin, const float* x, const float* y, size_t count,
-                  float* excess) const;
 
     // What the index holds, for a renderer that computes terms by itself. Features lie chain after chain.
     static constexpr int kSegments = 8;
@@ -100,13 +99,20 @@ class EdgeBlur {
         return std::span(mReaches).subspan(mFirst[p.index], mFirst[p.index + 1] - mFirst[p.index]);
     }
 
-  private:
-    static constexpr uint32_t kNone = 0xffffffff;
+    // A point's nearest on a feature.
     struct Foot {
         double t = 0;
-        double distance = 0;
+        double distance = 0;  // px
         glm::dvec2 point{0};
     };
+    // Where the nearest parameter of even features is sought: this far from the share of the base.
+    static constexpr double kEvenSpan = .3;
+    // Sets `term` to that of `at` in patch p, whose nearest point on a chain is `foot`; false where it has
+    // none.
+    bool termAt(PatchId p, const Reach& reach, glm::dvec2 at, const Foot& foot, BlurTerm& term) const;
+
+  private:
+    static constexpr uint32_t kNone = 0xffffffff;
 
     double fade(const Feature& feature, double t, double sigma) const;
     void collectChains(const PatchMesh& mesh, double sharpen);
@@ -129,9 +135,11 @@ class EdgeBlur {
 void blurredColour(const PatchMesh& mesh, const EdgeBlur& blur, PatchId p, const Barycentric& at,
                    glm::dvec2 point, double* out);
 
-// Adds the terms of image points of patch p to its own colours there, channel by channel: the fast twin of
-// blurredColour. A point's colour does not depend on its neighbours.
-void addBlur(const PatchMesh& mesh, const EdgeBlur& blur, PatchId p, std::span<const glm::dvec2> points,
-             float* const* colours);
+// Adds the terms of the image points origin + (x[i], y[i]) of patch p to its own colours there, channel by
+// channel: the fast twin of blurredColour, in single precision. A point's colour does not depend on its
+// neighbours, to the last bit. At most kMaxBlurPoints points. (edge_blur_simd.cpp)
+constexpr size_t kMaxBlurPoints = 512;
+void addBlur(const PatchMesh& mesh, const EdgeBlur& blur, PatchId p, glm::dvec2 origin, const float* x,
+             const float* y, size_t count, float* const* colours);
 
 }  // namespace tessera

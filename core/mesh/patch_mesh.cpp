@@ -72,6 +72,13 @@ void PatchMesh::setConnectivity(HalfedgeMesh connectivity) {
     grow(mAttributes, mConnectivity.faceCapacity());
 }
 
+void PatchMesh::setSplines(std::span<const PatchId> patches, std::vector<PatchSpline> splines) {
+    std::vector<size_t> indices;
+    indices.reserve(patches.size());
+    for (const PatchId p : patches) indices.push_back(p.index);
+    mSplines.replace(indices, splines);
+}
+
 std::array<LatticePoint, 4> PatchMesh::controlPoints(HalfedgeId h) const {
     const EdgeCurve& c = curve(HalfedgeMesh::edge(h));
     const bool forward = HalfedgeMesh::halfedge(HalfedgeMesh::edge(h)) == h;

@@ -84,6 +84,8 @@ class PatchMesh {
     void setCurve(EdgeId e, const EdgeCurve& curve) { mCurves.edit(e.index) = curve; }
     void setInterior(PatchId p, LatticePoint point) { mInteriors.edit(p.index) = point; }
     void setSpline(PatchId p, PatchSpline spline) { mSplines.edit(p.index) = std::move(spline); }
+    // For many patches, by ascending id: what they share with other meshes is not copied first.
+    void setSplines(std::span<const PatchId> patches, std::vector<PatchSpline> splines);
     void setAttributes(PatchId p, const PatchAttributes& a) { mAttributes.edit(p.index) = a; }
     void setSmoothJoins(std::vector<SmoothJoin> joins) { mSmoothJoins = std::move(joins); }
 

@@ -75,17 +75,20 @@ glm::dvec2 splineGradient(const PatchSpline& spline, int c, glm::dvec2 at);
 // machine has; phi is accurate to 1e-6 on the domain. Thread-safe. (tps_simd.cpp)
 void evaluateSplines(const PatchSpline& spline, int channels, const float* x, const float* y, size_t count,
                      float* const* out);
-// The same without vector instructions: what a machine without AVX2 gets.
-void evaluateSplinesScalar(const PatchSpline& spline, int channels, const float* x, const float* y,
-                           size_t count, float* const* out);
+
+// The instructions that there is code for. Avx2 and Avx512 give the same bits.
+enum class SplineInstructions : uint8_t { Scalar, Avx2, Avx512 };
+const char* nameOf(SplineInstructions instructions);
+// Those that this machine has, the widest last.
+const std::vector<SplineInstructions>& splineInstructions();
+// evaluateSplines with one of them.
+void evaluateSplinesWith(SplineInstructions instructions, const PatchSpline& spline, int channels,
+                         const float* x, const float* y, size_t count, float* const* out);
 
 // phi of the distances from `count` points of the domain to each of `centres`: out[i * stride + k] for centre
 // i and point k. Within 1e-13, and the same on every machine.
 void evaluateKernels(std::span<const glm::dvec2> centres, const float* x, const float* y, size_t count,
                      double* out, size_t stride);
-
-// What the machine offers and evaluateSplines uses: "avx2" or "scalar".
-const char* splineInstructionSet();
 
 // Between a spline's n alphas with three polynomial terms and its values at its n >= 3 centres: the n + 3
 // coefficients (b0, b1, b2, alphas, as in PatchSpline) are `toCoefficients` (row-major, n + 3 rows of n)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 
 #include "core/base/check.h"
 #include "core/mesh/tps.h"
@@ -22,17 +23,26 @@ constexpr float kHalfLog2 = .34657359f;
 constexpr float kLogPolynomial[8] = {3.19697829e-07f, 1.44265211f, -.720386612f, .472499525f,
                                      -.323115935f,    .190420831f, -.076848726f, .0147787208f};
 
+// Places of centres in single precision.
+template <size_t kCount>
+struct FloatCentres {
+    explicit FloatCentres(const std::array<glm::dvec2, kCount>& centres) {
+        for (size_t i = 0; i < kCount; ++i) {
+            x[i] = float(centres[i].x);
+            y[i] = float(centres[i].y);
+        }
+    }
+
+    std::array<float, kCount> x, y;
+};
+
 // A spline with its centres side by side and the same number of terms for each channel, the missing alphas 0.
 struct Packed {
     static constexpr int kMaxTerms = 255;
 
     Packed(const PatchSpline& spline, int channels) : terms(spline.maxTerms(channels)) {
         TESSERA_CHECK(size_t(terms) <= spline.centreCount());
-        for (int i = 0; i < terms; ++i) {
-            const glm::dvec2 c = spline.centre(i);
-            centreX[i] = float(c.x);
-            centreY[i] = float(c.y);
-        }
+        placeCentres(spline);
         const float* k = spline.coefficients.data();
         for (int c = 0; c < channels; ++c) {
             const int own = spline.terms[size_t(c)];
@@ -40,6 +50,26 @@ struct Packed {
             for (int i = 0; i < own; ++i) alpha[c][i] = kHalfLog2 * k[3 + i];
             for (int i = own; i < terms; ++i) alpha[c][i] = 0;
             k += 3 + own;
+        }
+    }
+
+    void placeCentres(const PatchSpline& spline) {
+        const auto count = size_t(terms);
+        if (!spline.sites.empty()) {
+            static const FloatCentres places(centreSites());
+            for (size_t i = 0; i < count; ++i) {
+                centreX[i] = places.x[spline.sites[i]];
+                centreY[i] = places.y[spline.sites[i]];
+            }
+        } else if (!spline.centres.empty()) {
+            for (size_t i = 0; i < count; ++i) {
+                centreX[i] = spline.centres[i].x;
+                centreY[i] = spline.centres[i].y;
+            }
+        } else {
+            static const FloatCentres places(defaultCentres());
+            std::copy_n(places.x.begin(), count, centreX);
+            std::copy_n(places.y.begin(), count, centreY);
         }
     }
 
@@ -144,50 +174,124 @@ TESSERA_AVX2 void evaluateAvx2(const Packed& s, const float* x, const float* y, 
     for (int c = 0; c < kChannels; ++c) std::copy_n(rest[c], left, out[c] + i);
 }
 
-bool hasAvx2() {
-    static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    return has;
+#define TESSERA_AVX512 __attribute__((target("avx512f")))
+
+// The same operations as with 8 lanes, hence the same bits: getexp and getmant give the exponent and the
+// mantissa that are taken from the bits there. The exponent of 0 has to be finite. (Masked, since GCC 12
+// warns of its own headers' unmasked ones.)
+TESSERA_AVX512 inline __attribute__((always_inline)) __m512 scaledKernel(__m512 q) {
+    constexpr __mmask16 kAll = 0xffff;
+    const __m512 one = _mm512_set1_ps(1), least = _mm512_set1_ps(std::numeric_limits<float>::min());
+    const __m512 e = _mm512_maskz_getexp_ps(kAll, _mm512_maskz_max_ps(kAll, q, least));
+    const __m512 t =
+        _mm512_sub_ps(_mm512_maskz_getmant_ps(kAll, q, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_src), one);
+    __m512 p = _mm512_set1_ps(kLogPolynomial[7]);
+    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[6]));
+    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[5]));
+    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[4]));
+    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[3]));
+    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[2]));
+    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[1]));
+    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[0]));
+    return _mm512_mul_ps(q, _mm512_add_ps(e, p));
 }
 
-#else
+// evaluateBlock for 16 lanes; `mask` says which of the last vector's points there are.
+template <int kChannels, int kVectors>
+TESSERA_AVX512 inline __attribute__((always_inline)) void evaluateWideBlock(const Packed& s, const float* x,
+                                                                            const float* y, float* const* out,
+                                                                            size_t first, __mmask16 mask) {
+    constexpr __mmask16 kAll = 0xffff;
+    __m512 px[kVectors], py[kVectors], sum[kChannels][kVectors];
+    for (int v = 0; v < kVectors; ++v) {
+        const __mmask16 lanes = v + 1 < kVectors ? kAll : mask;
+        px[v] = _mm512_maskz_loadu_ps(lanes, x + first + 16 * v);
+        py[v] = _mm512_maskz_loadu_ps(lanes, y + first + 16 * v);
+        for (int c = 0; c < kChannels; ++c)
+            sum[c][v] = _mm512_fmadd_ps(
+                _mm512_set1_ps(s.affine[c][2]), py[v],
+                _mm512_fmadd_ps(_mm512_set1_ps(s.affine[c][1]), px[v], _mm512_set1_ps(s.affine[c][0])));
+    }
+    for (int k = 0; k < s.terms; ++k) {
+        const __m512 cx = _mm512_set1_ps(s.centreX[k]), cy = _mm512_set1_ps(s.centreY[k]);
+        for (int v = 0; v < kVectors; ++v) {
+            const __m512 dx = _mm512_sub_ps(px[v], cx), dy = _mm512_sub_ps(py[v], cy);
+            const __m512 phi = scaledKernel(_mm512_fmadd_ps(dy, dy, _mm512_mul_ps(dx, dx)));
+            for (int c = 0; c < kChannels; ++c)
+                sum[c][v] = _mm512_fmadd_ps(_mm512_set1_ps(s.alpha[c][k]), phi, sum[c][v]);
+        }
+    }
+    for (int v = 0; v < kVectors; ++v)
+        for (int c = 0; c < kChannels; ++c)
+            _mm512_mask_storeu_ps(out[c] + first + 16 * v, v + 1 < kVectors ? kAll : mask, sum[c][v]);
+}
 
-bool hasAvx2() {
-    return false;
+template <int kChannels>
+TESSERA_AVX512 void evaluateAvx512(const Packed& s, const float* x, const float* y, size_t count,
+                                   float* const* out) {
+    const auto lanes = [](size_t points) { return __mmask16((1u << std::min<size_t>(points, 16)) - 1); };
+    size_t i = 0;
+    for (; i + 16 < count; i += 32) evaluateWideBlock<kChannels, 2>(s, x, y, out, i, lanes(count - i - 16));
+    if (i < count) evaluateWideBlock<kChannels, 1>(s, x, y, out, i, lanes(count - i));
 }
 
 #endif
+
+template <int kChannels>
+void evaluateChannels(SplineInstructions instructions, const Packed& s, const float* x, const float* y,
+                      size_t count, float* const* out) {
+#if defined(__x86_64__)
+    if (instructions == SplineInstructions::Avx512) return evaluateAvx512<kChannels>(s, x, y, count, out);
+    if (instructions == SplineInstructions::Avx2) return evaluateAvx2<kChannels>(s, x, y, count, out);
+#endif
+    evaluateScalar(s, kChannels, x, y, count, out);
+}
 
 }  // namespace
 
+const char* nameOf(SplineInstructions instructions) {
+    switch (instructions) {
+        case SplineInstructions::Avx512:
+            return "avx512";
+        case SplineInstructions::Avx2:
+            return "avx2";
+        default:
+            return "scalar";
+    }
+}
+
+const std::vector<SplineInstructions>& splineInstructions() {
+    static const auto available = [] {
+        std::vector<SplineInstructions> found{SplineInstructions::Scalar};
+#if defined(__x86_64__)
+        const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+        if (avx2) found.push_back(SplineInstructions::Avx2);
+        if (avx2 && __builtin_cpu_supports("avx512f")) found.push_back(SplineInstructions::Avx512);
+#endif
+        return found;
+    }();
+    return available;
+}
+
 void evaluateSplines(const PatchSpline& spline, int channels, const float* x, const float* y, size_t count,
                      float* const* out) {
+    evaluateSplinesWith(splineInstructions().back(), spline, channels, x, y, count, out);
+}
+
+void evaluateSplinesWith(SplineInstructions instructions, const PatchSpline& spline, int channels,
+                         const float* x, const float* y, size_t count, float* const* out) {
     TESSERA_CHECK(channels >= 1 && channels <= kMaxChannels);
     const Packed packed(spline, channels);
-#if defined(__x86_64__)
-    if (hasAvx2()) {
-        switch (channels) {
-            case 1:
-                return evaluateAvx2<1>(packed, x, y, count, out);
-            case 2:
-                return evaluateAvx2<2>(packed, x, y, count, out);
-            case 3:
-                return evaluateAvx2<3>(packed, x, y, count, out);
-            default:
-                return evaluateAvx2<4>(packed, x, y, count, out);
-        }
+    switch (channels) {
+        case 1:
+            return evaluateChannels<1>(instructions, packed, x, y, count, out);
+        case 2:
+            return evaluateChannels<2>(instructions, packed, x, y, count, out);
+        case 3:
+            return evaluateChannels<3>(instructions, packed, x, y, count, out);
+        default:
+            return evaluateChannels<4>(instructions, packed, x, y, count, out);
     }
-#endif
-    evaluateScalar(packed, channels, x, y, count, out);
-}
-
-void evaluateSplinesScalar(const PatchSpline& spline, int channels, const float* x, const float* y,
-                           size_t count, float* const* out) {
-    TESSERA_CHECK(channels >= 1 && channels <= kMaxChannels);
-    evaluateScalar(Packed(spline, channels), channels, x, y, count, out);
-}
-
-const char* splineInstructionSet() {
-    return hasAvx2() ? "avx2" : "scalar";
 }
 
 }  // namespace tessera

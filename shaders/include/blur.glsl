@@ -8,6 +8,7 @@ const float kEvenSpan = 0.3;
 const int kNewtonSteps = 5;
 const float kNewtonEnough = 1e-4;
 const int kMaxBlurTerms = 4;
+const float kNearer = 1.0 - 1.0 / 2048.0;  // of a chain's features a later one must be
 const float kSameFoot = 0.05;  // feet that are this near in t may share a place
 
 float fade3(float from, float to, float x) {
@@ -71,15 +72,14 @@ float refinedFoot(FeatureCurve c, vec2 at, float t, float lo, float hi) {
     return t;
 }
 
-void takeNearer(FeatureCurve c, vec2 at, float t, inout Foot foot, inout bool nearer) {
+void takeNearer(FeatureCurve c, vec2 at, float t, inout Foot foot) {
     const vec2 off = at - t * (c.c1 + t * (c.c2 + t * c.c3));
     const float distance = length(off);
-    if (distance >= foot.distance) return;
-    foot = Foot(t, distance, off);
-    nearer = true;
+    if (distance < foot.distance) foot = Foot(t, distance, off);
 }
 
-// Whether feature f has a point nearer than foot.distance to `at`; then that is the new foot.
+// Whether feature f has a point nearer than foot.distance to `at`, by more than rounding; then that is the new
+// foot.
 bool findFoot(uint f, FeatureCurve c, FeatureBounds bounds, bool even, vec2 at, inout Foot foot) {
     const vec2 base = c.c1 + c.c2 + c.c3;
     const vec2 onBase = nearestOnSegment(vec2(0.0), base, at);
@@ -103,10 +103,13 @@ bool findFoot(uint f, FeatureCurve c, FeatureBounds bounds, bool even, vec2 at, 
         const float chordLimit = foot.distance + bounds.flatness;
         if (best >= chordLimit * chordLimit) return false;
     }
-    bool nearer = false;
-    takeNearer(c, at, refinedFoot(c, at, t, max(0.0, t - span), min(1.0, t + span)), foot, nearer);
-    takeNearer(c, at, t, foot, nearer);  // Newton's method may leave for a worse place
-    return nearer;
+    const float enough = kNearer * foot.distance;
+    Foot found = Foot(0.0, enough, vec2(0.0));
+    takeNearer(c, at, refinedFoot(c, at, t, max(0.0, t - span), min(1.0, t + span)), found);
+    takeNearer(c, at, t, found);  // Newton's method may leave for a worse place
+    if (found.distance >= enough) return false;
+    foot = found;
+    return true;
 }
 
 float featureSigma(uint f, float t) {

@@ -38,16 +38,14 @@ void benchSplines() {
     }
     float out[3][kBatch];
     float* const outs[] = {out[0], out[1], out[2]};
-    const auto run = [&](auto&& evaluate) {
-        return shortest(5, [&] {
-            for (size_t i = 0; i < kPixels; i += kBatch)
-                evaluate(spline, 3, x.data() + i, y.data() + i, kBatch, outs);
-        });
-    };
-    const double best = run(evaluateSplines), plain = run(evaluateSplinesScalar);
     std::printf("splines, 16 terms x 3 channels, 768 x 512 points, one thread:\n");
-    std::printf("  %-8s %8.2f ms  %6.2f ns a point\n", splineInstructionSet(), best, best * 1e6 / kPixels);
-    std::printf("  %-8s %8.2f ms  %6.2f ns a point\n", "scalar", plain, plain * 1e6 / kPixels);
+    for (const SplineInstructions instructions : splineInstructions()) {
+        const double best = shortest(5, [&] {
+            for (size_t i = 0; i < kPixels; i += kBatch)
+                evaluateSplinesWith(instructions, spline, 3, x.data() + i, y.data() + i, kBatch, outs);
+        });
+        std::printf("  %-8s %8.2f ms  %6.2f ns a point\n", nameOf(instructions), best, best * 1e6 / kPixels);
+    }
 }
 
 void benchRenderers() {

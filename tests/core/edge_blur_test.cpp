@@ -271,6 +271,98 @@ PatchMesh blurredMesh(unsigned seed) {
     return mesh;
 }
 
+// The largest difference of addBlur from blurredColour over a grid of points `step` px apart, and where more
+// than the terms that a point can have are near.
+double largestErrorOfAddBlur(const PatchMesh& mesh, double step) {
+    const EdgeBlur blur(mesh);
+    const PatchQuery query(mesh);
+    double worst = 0;
+    for (double y = .123; y < mesh.height(); y += step)
+        for (double x = .077; x < mesh.width(); x += step) {
+            const auto hit = query.patchAt({x, y});
+            if (!hit) continue;
+            double plain[kMaxChannels];
+            blurredColour(mesh, blur, hit->patch, hit->at, {x, y}, plain);
+            const glm::dvec2 origin =
+                evaluate(toPixels(mesh.controlPoints(hit->patch)), Barycentric(1.0 / 3));
+            const auto offX = float(x - origin.x), offY = float(y - origin.y);
+            float fast[kMaxChannels] = {};
+            float* const out[] = {&fast[0], &fast[1], &fast[2], &fast[3]};
+            addBlur(mesh, blur, hit->patch, origin, &offX, &offY, 1, out);
+            for (int c = 0; c < 3; ++c)
+                worst = std::max(worst,
+                                 std::abs(plain[c] - double(fast[c]) -
+                                          evaluateSpline(mesh.spline(hit->patch), c, domainPoint(hit->at))));
+        }
+    return worst;
+}
+
+TEST(AddBlur, IsBlurredColourInSinglePrecision) {
+    EXPECT_LT(largestErrorOfAddBlur(bentCut(2), .5), 1e-4);
+    EXPECT_LT(largestErrorOfAddBlur(halfCut(1, 3), .5), 1e-4);
+}
+
+TEST(AddBlur, TakesTheHeaviestTermsWhereManyChainsAre) {
+    PatchMesh mesh = gridMesh(60, 60, 6, 6);
+    for (uint32_t i = 1; i < 6; ++i) makeFeature(mesh, 14 + i, 21 + i, 8);  // chains of one edge, 10 px apart
+    std::mt19937 random(8);
+    mesh.forEachPatch([&](PatchId p) { mesh.setSpline(p, randomSpline(3, random)); });
+    const EdgeBlur blur(mesh);
+    const PatchQuery query(mesh);
+    size_t full = 0;
+    for (double y = 1.3; y < 40; y += .7)
+        for (double x = 1.7; x < 40; x += .7) {
+            std::array<BlurTerm, kMaxBlurTerms> terms;
+            full += blur.terms(query.patchAt({x, y})->patch, {x, y}, terms) == kMaxBlurTerms;
+        }
+    EXPECT_GT(full, 0u);
+    EXPECT_LT(largestErrorOfAddBlur(mesh, .7), 1e-4);
+}
+
+TEST(AddBlur, APointDoesNotDependOnItsNeighbours) {
+    const PatchMesh mesh = bentCut(2);
+    const EdgeBlur blur(mesh);
+    const PatchId p = PatchQuery(mesh).patchAt({22, 12})->patch;
+    const glm::dvec2 origin(20, 10);
+    constexpr size_t kCount = 53;
+    std::array<float, kCount> x, y;
+    for (size_t i = 0; i < kCount; ++i) {
+        x[i] = .21F * float(i % 11);
+        y[i] = .37F * float(i % 7);
+    }
+    std::array<std::array<float, kCount>, 3> together{};
+    float* const out[] = {together[0].data(), together[1].data(), together[2].data()};
+    addBlur(mesh, blur, p, origin, x.data(), y.data(), kCount, out);
+    for (size_t i = 0; i < kCount; ++i) {
+        std::array<float, 3> alone{};
+        float* const one[] = {&alone[0], &alone[1], &alone[2]};
+        addBlur(mesh, blur, p, origin, &x[i], &y[i], 1, one);
+        for (size_t c = 0; c < 3; ++c) EXPECT_EQ(alone[c], together[c][i]);
+    }
+    EXPECT_NE(together[0][0], 0);
+}
+
+// The vertex of a bend is the nearest point of a whole wedge, on both edges: the first one's colours are
+// taken, also where rounding brings the second one nearer.
+TEST(EdgeBlur, BesideABendTheFirstEdgeCounts) {
+    PatchMesh mesh = halfCut(2, 3);  // down to (30, 30), then to the right
+    makeFeature(mesh, 24, 25, 2);
+    const EdgeBlur blur(mesh);
+    const PatchQuery query(mesh);
+    const PatchId first = mesh.connectivity().face(mesh.connectivity().find(VertexId(24), VertexId(17)));
+    const PatchId beyond = mesh.connectivity().face(mesh.connectivity().find(VertexId(17), VertexId(24)));
+    int points = 0;
+    for (double y = 30.05; y < 34; y += .3)
+        for (double x = 26.03; x < 30; x += .3) {
+            std::array<BlurTerm, kMaxBlurTerms> terms;
+            const PatchId p = query.patchAt({x, y})->patch;
+            if (blur.terms(p, {x, y}, terms) != 1) continue;
+            ++points;
+            EXPECT_EQ(std::minmax(terms[0].own, terms[0].other), std::minmax(first, beyond)) << x << ' ' << y;
+        }
+    EXPECT_GT(points, 50);
+}
+
 TEST(BlurredRendering, FastIsTheReference) {
     for (unsigned seed = 1; seed <= 3; ++seed) {
         const PatchMesh mesh = blurredMesh(seed);

@@ -347,6 +347,21 @@ TEST(Recolour, AlphaStaysAndColoursChangeBeforeIt) {
     testing::expectValid(mesh);
 }
 
+TEST(Brush, AGrowingStrokeIsTheWholeOne) {
+    const PatchMesh start = scene();
+    const PatchQuery query(start);
+    const std::vector<glm::dvec2> stroke{{40, 30}, {60, 35}, {120, 60}, {160, 120}, {50, 33}};
+    const BrushOptions options{18, .5, {1, 0, 0}, .8, true};
+    BrushStroke growing(start, query, options);
+    for (size_t n = 0; n <= stroke.size(); ++n) {
+        const std::span part(stroke.data(), n);
+        PatchMesh grown = start, whole = start;
+        const Touched touched = growing.draw(grown, part), expected = brush(whole, query, part, options);
+        EXPECT_EQ(touched.patches, expected.patches) << n;
+        for (const PatchId p : all(start)) EXPECT_EQ(grown.spline(p), whole.spline(p)) << n;
+    }
+}
+
 TEST(Brush, PaintsUnderTheStrokeAlone) {
     PatchMesh mesh = scene();
     const PatchQuery query(mesh);

@@ -55,6 +55,22 @@ TEST(PagedArray, AnEditCopiesItsPageAlone) {
     for (size_t i = 0; i < 12; ++i) EXPECT_EQ(array.sharesPage(snapshot, i), i < 4 || i >= 8) << i;
 }
 
+TEST(PagedArray, ReplacingLeavesSnapshotsAlone) {
+    Small array = counting(11);
+    const Small snapshot = array;
+    array.edit(9) = 90;  // its page is the array's own
+    const std::vector<size_t> indices{0, 1, 2, 3, 6, 9, 10};
+    std::vector<int> values{100, 101, 102, 103, 106, 109, 110};
+    array.replace(indices, values);
+    const std::vector<int> expected{100, 101, 102, 103, 4, 5, 106, 7, 8, 109, 110};
+    for (size_t i = 0; i < 11; ++i) {
+        EXPECT_EQ(array[i], expected[i]);
+        EXPECT_EQ(snapshot[i], int(i));
+    }
+    array.replace({}, {});
+    EXPECT_EQ(array[0], 100);
+}
+
 TEST(PagedArray, SharesPageOnlyWithinBothArrays) {
     const Small array = counting(6);
     Small shorter = array;

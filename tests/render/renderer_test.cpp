@@ -96,6 +96,27 @@ INSTANTIATE_TEST_SUITE_P(, RendererAtZoom,
 
 class RendererTest : public testing::GlTest {};
 
+// Beside a bend of a chain two of its edges have the same nearest point, and other patches beside it.
+TEST_F(RendererTest, DrawsTheBlurBesideABend) {
+    PatchMesh mesh = testing::gridMesh(60, 60, 6, 6);
+    const HalfedgeMesh& c = mesh.connectivity();
+    for (const auto& [from, to] : {std::pair(17U, 24U), std::pair(24U, 25U)}) {
+        const EdgeId e = HalfedgeMesh::edge(c.find(VertexId(from), VertexId(to)));
+        EdgeCurve curve = mesh.curve(e);
+        curve.feature = true;
+        curve.blurSigma = {2, 2};
+        mesh.setCurve(e, curve);
+    }
+    std::mt19937 random(4);
+    mesh.forEachPatch([&](PatchId p) { mesh.setSpline(p, testing::randomSpline(3, random)); });
+    View view;
+    view.scale = {32, 32};
+    view.width = kWidth;
+    view.height = kHeight;
+    view.origin = {23.0123, 26.0377};  // the bend is at (30, 30)
+    expectSamePicture(mesh, view, {.samples = 1});
+}
+
 TEST_F(RendererTest, DrawsAlphaAndNothingOutsideThePicture) {
     const PatchMesh mesh = blurredMesh(4);
     View view = wholePicture(mesh, {1, 1});
