@@ -68,7 +68,7 @@ class EquationBuilder {
             const auto count = size_t(patch.count);
             patch.gram.assign(count * count, 0);
             patch.moments.assign(count * size_t(mesh.channels()), 0);
-            for (size_t k = 0; k < count; ++k) patch.gram[k * (count + 1)] = kRidge;
+            patch.damping.assign(count, kRidge);
         }
     }
 
@@ -231,11 +231,10 @@ void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& part
     Eigen::MatrixXf gram = Eigen::MatrixXf::Zero(patch.count, patch.count);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(means);
     gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-    Eigen::Map<Eigen::MatrixXd> own(patch.gram.data(), patch.count, patch.count);
-    own = gram.cast<double>();
+    Eigen::Map<Eigen::MatrixXf>(patch.gram.data(), patch.count, patch.count) = gram;
     const double area = std::max(1.0, weight);
     for (int k = 0; k < patch.count; ++k)
-        own(k, k) += kRidge * area + kBending / area * m.bases[p.index].energy(k);
+        patch.damping[size_t(k)] = kRidge * area + kBending / area * m.bases[p.index].energy(k);
     Eigen::Map<Eigen::MatrixXd>(patch.moments.data(), patch.count, mMesh.channels()) =
         (means * targets).cast<double>();
 }
@@ -300,7 +299,7 @@ void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
     const HalfedgeMesh& mesh = mMesh.connectivity();
     constexpr double kSamplesPerPx = .7;
     // As many as sites along an edge: fewer points would let colours swing between them.
-    constexpr int kLeast = kSiteSubdivisions + 1, kMost = 2 * kSiteSubdivisions + 1;
+    constexpr int kLeast = kSiteSubdivisions + 1, kMost = kSiteSubdivisions + 5;
     std::vector<HalfedgeId> halfedges;  // of m.seams
     uint32_t rows = m.pixelRows;
     m.seamStride = weights.gradient > 0 ? 2 : 1;

@@ -22,7 +22,8 @@ struct ColorEquations {
     // Matrices lie row after row.
     struct Patch {
         int count = 0;                 // of unknowns: the most that a channel has
-        std::vector<double> gram;      // (count x count), symmetric
+        std::vector<float> gram;       // (count x count), symmetric; sums of floats
+        std::vector<double> damping;   // count: to be added to its diagonal
         std::vector<double> moments;   // (channels x count)
         std::vector<uint32_t> rowIds;  // ascending
         std::vector<float> rows;       // (rowIds.size() x count)

@@ -15,6 +15,7 @@ namespace tessera {
 namespace {
 
 using Eigen::MatrixXd;
+using Eigen::MatrixXf;
 using Eigen::VectorXd;
 using Eigen::VectorXf;
 
@@ -39,8 +40,11 @@ using RowsOf = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dyna
 RowsOf rowsOf(const ColorEquations::Patch& patch) {
     return {patch.rows.data(), Eigen::Index(patch.rowIds.size()), patch.count};
 }
-Eigen::Map<const MatrixXd> gramOf(const ColorEquations::Patch& patch) {
+Eigen::Map<const MatrixXf> gramOf(const ColorEquations::Patch& patch) {
     return {patch.gram.data(), patch.count, patch.count};
+}
+Eigen::Map<const VectorXd> dampingOf(const ColorEquations::Patch& patch) {
+    return {patch.damping.data(), patch.count};
 }
 
 // The normal equations of one channel, A x = b, with patches' first terms alone.
@@ -79,8 +83,10 @@ class ChannelSystem {
                 const auto rows = all.leftCols(n);
                 mRight[p] = Eigen::Map<const VectorXd>(patch.moments.data() + channel * patch.count, n) +
                             (rows.transpose() * targets).cast<double>();
-                const Eigen::MatrixXf own = rows.transpose() * rowWeights.asDiagonal() * rows;
-                mFactors[p].compute(gramOf(patch).topLeftCorner(n, n) + own.cast<double>());
+                const MatrixXf own = rows.transpose() * rowWeights.asDiagonal() * rows;
+                MatrixXd normal = gramOf(patch).topLeftCorner(n, n).cast<double>() + own.cast<double>();
+                normal.diagonal() += dampingOf(patch).head(n);
+                mFactors[p] = normal.llt().matrixLLT().cast<float>();
             }
         });
         return !progress.stopRequested();
@@ -88,7 +94,13 @@ class ChannelSystem {
 
     // Each patch by itself, others' shares in common rows left out: the preconditioner.
     void precondition(const PatchVectors& r, PatchVectors& z) const {
-        forPatches([&](size_t p) { z[p] = mFactors[p].solve(r[p]); });
+        forPatches([&](size_t p) {
+            VectorXf solved = r[p].cast<float>();
+            const auto lower = mFactors[p].triangularView<Eigen::Lower>();
+            lower.solveInPlace(solved);
+            lower.transpose().solveInPlace(solved);
+            z[p] = solved.cast<double>();
+        });
     }
 
     void apply(const PatchVectors& x, PatchVectors& ax) {
@@ -108,8 +120,10 @@ class ChannelSystem {
             VectorXf totals(Eigen::Index(patch.rowIds.size()));
             for (size_t i = 0; i < patch.rowIds.size(); ++i)
                 totals(Eigen::Index(i)) = mTotals(patch.rowIds[i]);
-            ax[p].noalias() = gramOf(patch).topLeftCorner(mTerms[p], mTerms[p]) * x[p];
-            ax[p] += (rowsOf(patch).leftCols(mTerms[p]).transpose() * totals).cast<double>();
+            const int n = mTerms[p];
+            ax[p] = dampingOf(patch).head(n).cwiseProduct(x[p]);
+            ax[p].noalias() += gramOf(patch).topLeftCorner(n, n).cast<double>() * x[p];
+            ax[p] += (rowsOf(patch).leftCols(n).transpose() * totals).cast<double>();
         });
     }
 
@@ -136,7 +150,7 @@ class ChannelSystem {
     const VectorXf& mWeights;
     int mChannel;
     std::vector<int> mTerms;
-    std::vector<Eigen::LLT<MatrixXd>> mFactors;
+    std::vector<MatrixXf> mFactors;  // Cholesky's lower triangles, rounded: they only precondition
     PatchVectors mRight;
     std::vector<VectorXf> mPartial;  // by patch and row: its share
     VectorXf mTotals;                // by row
