@@ -7,3 +7,6 @@
 #else
 #define TESSERA_VECTOR_CLONES
 #endif
+
+// What such a function calls has to become part of it: no vector may cross a call.
+#define TESSERA_INLINE inline __attribute__((always_inline))

@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 
 #include "core/base/check.h"
+#include "core/base/vector_clones.h"
 #include "core/mesh/edge_blur.h"
 
 namespace tessera {
@@ -48,8 +49,6 @@ struct LaneFeature {
         }
     }
 };
-
-#define TESSERA_INLINE inline __attribute__((always_inline))
 
 TESSERA_INLINE void load(const float* from, Lanes& to) {
     std::memcpy(&to, from, sizeof to);
@@ -135,16 +134,9 @@ TESSERA_INLINE void footOf(const LaneFeature& f, const Lanes& x, const Lanes& y,
     squared = before < after ? before : after;
 }
 
-// The same operations in the same order for every instruction set, hence the same bits (contraction is off).
-#if defined(__x86_64__)
-#define TESSERA_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define TESSERA_CLONES
-#endif
-
 // The squares of the points' distances from a segment; counts are whole vectors.
-TESSERA_CLONES void squaredDistances(const LaneSegment& segment, const float* x, const float* y, size_t count,
-                                     float* squared) {
+TESSERA_VECTOR_CLONES void squaredDistances(const LaneSegment& segment, const float* x, const float* y,
+                                            size_t count, float* squared) {
     for (size_t i = 0; i < count; i += kVector) {
         Lanes px, py, s, d;
         load(x + i, px);
@@ -155,7 +147,7 @@ TESSERA_CLONES void squaredDistances(const LaneSegment& segment, const float* x,
 }
 
 // The least and the largest of whole vectors of values.
-TESSERA_CLONES std::pair<float, float> extent(const float* values, size_t count) {
+TESSERA_VECTOR_CLONES std::pair<float, float> extent(const float* values, size_t count) {
     Lanes lo, hi;
     load(values, lo);
     hi = lo;
@@ -172,8 +164,8 @@ TESSERA_CLONES std::pair<float, float> extent(const float* values, size_t count)
 }
 
 // The nearest points of a feature.
-TESSERA_CLONES void findFeet(const LaneFeature& f, const float* x, const float* y, size_t count, float* t,
-                             float* squared) {
+TESSERA_VECTOR_CLONES void findFeet(const LaneFeature& f, const float* x, const float* y, size_t count,
+                                    float* t, float* squared) {
     for (size_t i = 0; i < count; i += kVector) {
         Lanes px, py, foot, d;
         load(x + i, px);

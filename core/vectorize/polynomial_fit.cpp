@@ -11,7 +11,6 @@
 
 // No vector crosses a call, for whose conventions the compiler warns: what has vectors is inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
-#define TESSERA_INLINE inline __attribute__((always_inline))
 
 namespace tessera {
 

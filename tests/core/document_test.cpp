@@ -489,14 +489,16 @@ TEST(Document, SizesOfChunksAddUpToTheFile) {
     EXPECT_EQ(sum, bytes.size());
 }
 
+std::vector<uint8_t> fixtureBytes(const std::string& name) {
+    std::ifstream file(TESSERA_TEST_DATA "/" + name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
 // A document of version 1 with all that a document can hold. It is never made again: what was stored once
 // must load for ever.
 class FixtureOfVersion1 : public ::testing::Test {
   protected:
-    static std::vector<uint8_t> bytes() {
-        std::ifstream file(TESSERA_TEST_DATA "/v1.tessera", std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
+    static std::vector<uint8_t> bytes() { return fixtureBytes("v1.tessera"); }
 };
 
 TEST_F(FixtureOfVersion1, LoadsWithItsNumbers) {
@@ -590,8 +592,7 @@ TEST_F(FixtureOfVersion1, StoresAsTheNewestVersionWithoutLoss) {
 
 // The same of version 2, with splines on the sites of its lattice, in the opponent basis.
 TEST(FixtureOfVersion2, LoadsWithItsNumbersAndStoresAndLoadsUnchanged) {
-    std::ifstream file(TESSERA_TEST_DATA "/v2.tessera", std::ios::binary);
-    const std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::vector<uint8_t> bytes = fixtureBytes("v2.tessera");
     EXPECT_EQ(chunkFileVersion(bytes), 2u);
     Document d = decoded(bytes);
     const PatchMesh& mesh = d.mesh;
@@ -645,8 +646,7 @@ TEST(FixtureOfVersion2, LoadsWithItsNumbersAndStoresAndLoadsUnchanged) {
 
 // And of version 3, with sites of the finer lattice.
 TEST(FixtureOfVersion3, LoadsWithItsNumbersAndStoresToItsOwnBytes) {
-    std::ifstream file(TESSERA_TEST_DATA "/v3.tessera", std::ios::binary);
-    const std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::vector<uint8_t> bytes = fixtureBytes("v3.tessera");
     EXPECT_EQ(chunkFileVersion(bytes), 3u);
     Document d = decoded(bytes);
     const PatchMesh& mesh = d.mesh;
