@@ -38,7 +38,7 @@ Touched refitColours(PatchMesh& mesh, const Image& photo, const PatchSet& set) {
     std::vector<SiteChoice> choices(c.faceCapacity());
     for (const PatchId p : patches) choices[p.index] = choiceOf(mesh.spline(p), mesh.channels());
     Touched touched;
-    touched.patches = refitColors(mesh, inBasis(photo, mesh.colourBasis()), choices,
+    touched.patches = refitColors(mesh, FitPicture(inBasis(photo, mesh.colourBasis())), choices,
                                   VectorizeSettings{}.seamGradientWeight, kSeamWeight);
     return touched;
 }

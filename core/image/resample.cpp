@@ -1,5 +1,6 @@
 // See resample.h. Keys, "Cubic convolution interpolation for digital image processing", IEEE Transactions on
-// Acoustics, Speech, and Signal Processing 29(6), 1981.
+// Acoustics, Speech, and Signal Processing 29(6), 1981; Irani and Peleg, "Improving resolution by image
+// registration", CVGIP: Graphical Models and Image Processing 53(3), 1991.
 #include "core/image/resample.h"
 
 #include <algorithm>
@@ -43,6 +44,21 @@ Image upsample(const Image& image, int factor, ResampleFilter filter) {
         cv::Mat to(large.height(), large.width(), CV_32F, large.plane(c).data());
         cv::resize(from, to, to.size(), 0, 0,
                    filter == ResampleFilter::Bicubic ? cv::INTER_CUBIC : cv::INTER_LANCZOS4);
+    }
+    return large;
+}
+
+Image enlargedMeans(const Image& image, int factor, const std::stop_token& stop) {
+    constexpr int kRounds = 4;
+    Image large = upsample(image, factor, ResampleFilter::Bicubic);
+    for (int round = 0; round < kRounds && !stop.stop_requested(); ++round) {
+        Image left = boxDownsample(large, factor);
+        for (int c = 0; c < image.channels(); ++c)
+            for (size_t i = 0; i < image.planeSize(); ++i)
+                left.plane(c)[i] = image.plane(c)[i] - left.plane(c)[i];
+        const Image correction = upsample(left, factor, ResampleFilter::Bicubic);
+        for (int c = 0; c < image.channels(); ++c)
+            for (size_t i = 0; i < large.planeSize(); ++i) large.plane(c)[i] += correction.plane(c)[i];
     }
     return large;
 }

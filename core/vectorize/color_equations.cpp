@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <span>
 
 #include "core/base/parallel.h"
 #include "core/mesh/patch_query.h"
-#include "core/vectorize/patch_pixels.h"
+#include "core/vectorize/patch_cells.h"
 
 namespace tessera {
 
@@ -25,31 +26,45 @@ constexpr double kBending = 1e-2, kRidge = 1e-6;
 struct Parts {
     struct Chunk {
         uint32_t patch;
-        std::vector<uint32_t> ids;   // of rows
-        std::vector<float> factors;  // for each of them
+        std::vector<uint32_t> ids;  // of rows
+        PackedRows rows;            // for each of them
     };
     std::vector<Chunk> chunks;
 
-    // Good until the next call for the same patch.
-    float* add(uint32_t id, uint32_t patch, size_t count) {
+    void add(uint32_t id, uint32_t patch, std::span<const float> row, std::span<const float> scales) {
         auto chunk =
             std::find_if(chunks.begin(), chunks.end(), [&](const Chunk& c) { return c.patch == patch; });
         if (chunk == chunks.end()) chunk = chunks.insert(chunk, {patch, {}, {}});
         chunk->ids.push_back(id);
-        chunk->factors.resize(chunk->factors.size() + count, 0.0F);
-        return chunk->factors.data() + chunk->factors.size() - count;
+        chunk->rows.push(row, scales);
     }
     void shrink() {
         for (Chunk& chunk : chunks) {
             chunk.ids.shrink_to_fit();
-            chunk.factors.shrink_to_fit();
+            chunk.rows.shrink();
         }
     }
 };
 
+// Of each function at the sites of the lattice.
+std::vector<float> largestValues(const NewtonBasis& basis) {
+    constexpr float kLeast = 1e-6F;
+    std::array<float, kCentreSites> x{}, y{};
+    for (size_t s = 0; s < kCentreSites; ++s) {
+        x[s] = float(centreSites()[s].x);
+        y[s] = float(centreSites()[s].y);
+    }
+    Rows values(basis.size(), kCentreSites);
+    basis.evaluate(x.data(), y.data(), kCentreSites, values.data(), kCentreSites);
+    std::vector<float> largest;
+    for (int k = 0; k < basis.size(); ++k)
+        largest.push_back(std::max(kLeast, values.row(k).cwiseAbs().maxCoeff()));
+    return largest;
+}
+
 class EquationBuilder {
   public:
-    EquationBuilder(const PatchMesh& mesh, const Image& picture, const std::vector<SiteChoice>& choices,
+    EquationBuilder(const PatchMesh& mesh, const FitPicture& picture, const std::vector<SiteChoice>& choices,
                     int samplesPerSide)
         : mMesh(mesh), mPicture(picture), mSide(samplesPerSide), mBlur(mesh) {
         m.patches.resize(choices.size());
@@ -69,10 +84,11 @@ class EquationBuilder {
             patch.gram.assign(count * count, 0);
             patch.moments.assign(count * size_t(mesh.channels()), 0);
             patch.damping.assign(count, kRidge);
+            patch.scales = largestValues(m.bases.back());
         }
     }
 
-    void addPixels(Progress& progress);
+    void addCells(Progress& progress);
     void addSeams(const SeamWeights& weights, Progress& progress);
     void finish(const Progress& progress);
 
@@ -82,6 +98,11 @@ class EquationBuilder {
     bool held(uint32_t p) const { return m.patches[p].count == 0; }
     // How many factors a row has for a patch: its unknowns; of a held one its colours, channel by channel.
     size_t factorCount(uint32_t p) const { return size_t(held(p) ? mMesh.channels() : m.patches[p].count); }
+    std::span<const float> scales(uint32_t p) const {
+        static constexpr std::array<float, kMaxChannels> kOnes{1, 1, 1, 1};
+        if (held(p)) return {kOnes.data(), size_t(mMesh.channels())};
+        return m.patches[p].scales;
+    }
     void evaluateFactors(uint32_t p, const float* x, const float* y, size_t count, float* out) const;
     void evaluateSlopes(uint32_t p, glm::dvec2 at, double* values, double* alongX, double* alongY) const;
     void reach(const Rect& box) {
@@ -89,14 +110,14 @@ class EquationBuilder {
         mReach.max = glm::max(mReach.max, box.max);
     }
     bool inReach(PatchId p) const;
-    void addPatch(PatchId p, const PatchPixels& pixels, Parts& parts);
-    // A share of a pixel that is another place's colour: a blurred feature's, at the foot of a sample.
+    void addPatch(PatchId p, const PatchCells& cells, Parts& parts);
+    // A share of a cell that is another place's colour: a blurred feature's, at the foot of a sample.
     struct Foot {
-        uint32_t patch, pixel;
+        uint32_t patch, cell;
         float weight;
         glm::vec2 at;
     };
-    std::vector<Foot> findFeet(PatchId p, const PatchPixels& pixels, std::vector<uint8_t>& shared) const;
+    std::vector<Foot> findFeet(PatchId p, const PatchCells& cells, std::vector<uint8_t>& shared) const;
     void addFeet(std::vector<Foot> feet, Parts& parts);
     void addSide(HalfedgeId h, const ColorEquations::Seam& seam, double sign, const SeamWeights& weights,
                  Parts& parts);
@@ -105,7 +126,7 @@ class EquationBuilder {
                 const std::vector<uint32_t>& number);
 
     const PatchMesh& mMesh;
-    const Image& mPicture;
+    const FitPicture& mPicture;
     int mSide;
     EdgeBlur mBlur;
     Rect mReach{glm::dvec2(HUGE_VAL), glm::dvec2(-HUGE_VAL)};  // of the patches that are not held
@@ -139,7 +160,7 @@ void EquationBuilder::evaluateSlopes(uint32_t p, glm::dvec2 at, double* values, 
     }
 }
 
-// Whether pixels of a held patch may be those of others too.
+// Whether cells of a held patch may be those of others too.
 bool EquationBuilder::inReach(PatchId p) const {
     if (!held(p.index)) return true;
     constexpr double kMargin = 2;  // px
@@ -148,22 +169,22 @@ bool EquationBuilder::inReach(PatchId p) const {
            box.max.x >= mReach.min.x - kMargin && box.max.y >= mReach.min.y - kMargin;
 }
 
-// The jumps that blurred features add: own + weight (other - own), each at the foot. Marks the pixels that
+// The jumps that blurred features add: own + weight (other - own), each at the foot. Marks the cells that
 // have any as shared.
-std::vector<EquationBuilder::Foot> EquationBuilder::findFeet(PatchId p, const PatchPixels& pixels,
+std::vector<EquationBuilder::Foot> EquationBuilder::findFeet(PatchId p, const PatchCells& cells,
                                                              std::vector<uint8_t>& shared) const {
     std::vector<Foot> feet;
     if (!mBlur.inReach(p)) return feet;
-    const float share = 1 / float(mSide * mSide);
     std::array<BlurTerm, kMaxBlurTerms> terms;
-    for (size_t i = 0; i < pixels.at.size(); ++i) {
-        const int count = mBlur.terms(p, glm::dvec2(pixels.at[i]), terms);
-        if (count > 0) shared[pixels.pixelOf[i]] = 1;
+    for (size_t i = 0; i < cells.at.size(); ++i) {
+        const int count = mBlur.terms(p, glm::dvec2(cells.at[i]), terms);
+        if (count > 0) shared[cells.cellOf[i]] = 1;
         for (int t = 0; t < count; ++t) {
             const BlurTerm& term = terms[size_t(t)];
-            const uint32_t pixel = pixels.pixels[pixels.pixelOf[i]].index;
-            feet.push_back({term.own.index, pixel, -share * term.weight, term.ownAt});
-            feet.push_back({term.other.index, pixel, share * term.weight, term.otherAt});
+            const PatchCells::Cell& cell = cells.cells[cells.cellOf[i]];
+            const float weight = std::sqrt(cell.area) * cell.share * term.weight;
+            feet.push_back({term.own.index, cell.number, -weight, term.ownAt});
+            feet.push_back({term.other.index, cell.number, weight, term.otherAt});
         }
     }
     return feet;
@@ -171,7 +192,7 @@ std::vector<EquationBuilder::Foot> EquationBuilder::findFeet(PatchId p, const Pa
 
 void EquationBuilder::addFeet(std::vector<Foot> feet, Parts& parts) {
     std::stable_sort(feet.begin(), feet.end(), [](const Foot& a, const Foot& b) {
-        return a.patch != b.patch ? a.patch < b.patch : a.pixel < b.pixel;
+        return a.patch != b.patch ? a.patch < b.patch : a.cell < b.cell;
     });
     std::vector<float> x, y;
     for (size_t first = 0, last = 0; first < feet.size(); first = last) {
@@ -187,43 +208,45 @@ void EquationBuilder::addFeet(std::vector<Foot> feet, Parts& parts) {
         const auto functions = Eigen::Index(factorCount(q));
         Rows values(functions, Eigen::Index(n));
         evaluateFactors(q, x.data(), y.data(), n, values.data());
-        float* row = nullptr;
+        Eigen::VectorXf row = Eigen::VectorXf::Zero(functions);
         for (size_t i = 0; i < n; ++i) {
-            if (i == 0 || feet[first + i].pixel != feet[first + i - 1].pixel)
-                row = parts.add(feet[first + i].pixel, q, size_t(functions));
-            for (Eigen::Index k = 0; k < functions; ++k)
-                row[k] += feet[first + i].weight * values(k, Eigen::Index(i));
+            row += feet[first + i].weight * values.col(Eigen::Index(i));
+            if (i + 1 < n && feet[first + i + 1].cell == feet[first + i].cell) continue;
+            parts.add(feet[first + i].cell, q, {row.data(), size_t(functions)}, scales(q));
+            row.setZero();
         }
     }
 }
 
-void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& parts) {
+// An equation counts as its cell's area.
+void EquationBuilder::addPatch(PatchId p, const PatchCells& cells, Parts& parts) {
     auto& patch = m.patches[p.index];
-    const size_t samples = pixels.x.size();
-    const auto count = Eigen::Index(pixels.pixels.size());
+    const size_t samples = cells.x.size();
+    const auto count = Eigen::Index(cells.cells.size());
     const auto functions = Eigen::Index(factorCount(p.index));
     Rows values(functions, Eigen::Index(samples));
-    evaluateFactors(p.index, pixels.x.data(), pixels.y.data(), samples, values.data());
+    evaluateFactors(p.index, cells.x.data(), cells.y.data(), samples, values.data());
     Eigen::MatrixXf means = Eigen::MatrixXf::Zero(functions, count);
-    for (size_t i = 0; i < samples; ++i) means.col(pixels.pixelOf[i]) += values.col(Eigen::Index(i));
-    means *= 1 / float(mSide * mSide);
+    for (size_t i = 0; i < samples; ++i) means.col(cells.cellOf[i]) += values.col(Eigen::Index(i));
 
-    // Pixels that are not the patch's alone.
-    std::vector<uint8_t> shared(pixels.pixels.size());
-    const float whole = 1 - .5F / float(mSide * mSide);
-    for (size_t k = 0; k < shared.size(); ++k) shared[k] = pixels.pixels[k].coverage < whole;
-    std::vector<Foot> feet = findFeet(p, pixels, shared);
+    // Cells that are not the patch's alone.
+    std::vector<uint8_t> shared(cells.cells.size());
+    for (size_t k = 0; k < shared.size(); ++k)
+        shared[k] = cells.cells[k].coverage < 1 - .5F * cells.cells[k].share;
+    std::vector<Foot> feet = findFeet(p, cells, shared);
     Eigen::MatrixXf targets = Eigen::MatrixXf::Zero(count, mMesh.channels());
-    double weight = 0;
+    double covered = 0;  // px^2
     for (Eigen::Index k = 0; k < count; ++k) {
-        const auto& pixel = pixels.pixels[size_t(k)];
-        weight += double(pixel.coverage);
+        const PatchCells::Cell& cell = cells.cells[size_t(k)];
+        const float root = std::sqrt(cell.area);
+        covered += double(cell.coverage) * double(cell.area);
+        means.col(k) *= root * cell.share;
         if (shared[size_t(k)]) {
-            float* row = parts.add(pixel.index, p.index, size_t(functions));
-            for (Eigen::Index i = 0; i < functions; ++i) row[i] = means(i, k);
+            parts.add(cell.number, p.index, {means.col(k).data(), size_t(functions)}, scales(p.index));
             means.col(k).setZero();
         } else {
-            for (int c = 0; c < mMesh.channels(); ++c) targets(k, c) = mPicture.plane(c)[pixel.index];
+            for (int c = 0; c < mMesh.channels(); ++c)
+                targets(k, c) = root * mPicture.means.plane(c)[cell.number];
         }
     }
     addFeet(std::move(feet), parts);
@@ -232,28 +255,28 @@ void EquationBuilder::addPatch(PatchId p, const PatchPixels& pixels, Parts& part
     gram.selfadjointView<Eigen::Lower>().rankUpdate(means);
     gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
     Eigen::Map<Eigen::MatrixXf>(patch.gram.data(), patch.count, patch.count) = gram;
-    const double area = std::max(1.0, weight);
+    const double area = std::max(1.0, covered);
     for (int k = 0; k < patch.count; ++k)
         patch.damping[size_t(k)] = kRidge * area + kBending / area * m.bases[p.index].energy(k);
     Eigen::Map<Eigen::MatrixXd>(patch.moments.data(), patch.count, mMesh.channels()) =
         (means * targets).cast<double>();
 }
 
-void EquationBuilder::addPixels(Progress& progress) {
-    const PixelSampler sampler(mMesh, mSide);
+void EquationBuilder::addCells(Progress& progress) {
+    const CellSampler sampler(mMesh, mPicture.grid, mSide);
     const size_t first = mParts.size();
     mParts.resize(first + sampler.patches().size());
     parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
-        PatchPixels pixels;
+        PatchCells cells;
         for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
             if (!inReach(sampler.patches()[i])) continue;
-            sampler.sample(i, pixels);
-            if (pixels.pixels.empty()) continue;
-            addPatch(sampler.patches()[i], pixels, mParts[first + i]);
+            sampler.sample(i, cells);
+            if (cells.cells.empty()) continue;
+            addPatch(sampler.patches()[i], cells, mParts[first + i]);
             mParts[first + i].shrink();
         }
     });
-    m.pixelRows = uint32_t(mPicture.planeSize());
+    m.cellRows = uint32_t(mPicture.means.planeSize());
 }
 
 // One patch's side of a seam: colours, and derivatives across the edge.
@@ -269,6 +292,7 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
     const BezierCurve curve = toPixels(mMesh.controlPoints(HalfedgeMesh::halfedge(HalfedgeMesh::edge(h))));
     const size_t n = factorCount(p.index);
     std::vector<double> value(n), dx(n), dy(n);
+    std::vector<float> row(n);
     for (uint32_t i = 0; i < samples; ++i) {
         const double along = double(i) / double(samples - 1), s = reversed ? 1 - along : along;
         const double share = seam.length(i * m.seamStride, m.seamStride);
@@ -278,8 +302,8 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
         b[side] = 1 - s;
         b[(side + 1) % 3] = s;
         evaluateSlopes(p.index, domainPoint(b), value.data(), dx.data(), dy.data());
-        float* row = parts.add(seam.firstRow + m.seamStride * i, p.index, n);
         for (size_t k = 0; k < n; ++k) row[k] = float(w0 * value[k]);
+        parts.add(seam.firstRow + m.seamStride * i, p.index, row, scales(p.index));
         if (m.seamStride == 1) continue;
         // The step in the domain that goes a pixel along the edge's normal: J^-1 normal.
         const PatchPoint at = evaluateWithDerivatives(t, b);
@@ -290,8 +314,8 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
         const double dv = det > 1e-9 ? cross(normal, at.dw) / det : 0;
         const double dw = det > 1e-9 ? cross(at.dv, normal) / det : 0;
         const double stepX = dv + .5 * dw, stepY = kDomainHeight * dw;
-        row = parts.add(seam.firstRow + m.seamStride * i + 1, p.index, n);
         for (size_t k = 0; k < n; ++k) row[k] = float(w1 * (dx[k] * stepX + dy[k] * stepY));
+        parts.add(seam.firstRow + m.seamStride * i + 1, p.index, row, scales(p.index));
     }
 }
 
@@ -301,7 +325,7 @@ void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
     // As many as sites along an edge: fewer points would let colours swing between them.
     constexpr int kLeast = kSiteSubdivisions + 1, kMost = kSiteSubdivisions + 5;
     std::vector<HalfedgeId> halfedges;  // of m.seams
-    uint32_t rows = m.pixelRows;
+    uint32_t rows = m.cellRows;
     m.seamStride = weights.gradient > 0 ? 2 : 1;
     mMesh.forEachEdge([&](EdgeId e) {
         if (mesh.onBorder(e) || mMesh.curve(e).feature || mMesh.curve(e).colourBreak) return;
@@ -330,24 +354,25 @@ void EquationBuilder::gather(ColorEquations::Patch& patch, const std::vector<Par
                              const std::vector<uint32_t>& number) {
     struct Place {
         uint32_t id;
-        const float* factors;
+        const PackedRows* rows;
+        size_t row;
     };
     std::vector<Place> places;
     for (const Parts::Chunk* chunk : chunks)
-        for (size_t i = 0; i < chunk->ids.size(); ++i)
-            places.push_back({chunk->ids[i], chunk->factors.data() + i * size_t(patch.count)});
+        for (size_t i = 0; i < chunk->ids.size(); ++i) places.push_back({chunk->ids[i], &chunk->rows, i});
     std::stable_sort(places.begin(), places.end(),
                      [](const Place& a, const Place& b) { return a.id < b.id; });
     for (const Place& place : places)
         if (patch.rowIds.empty() || patch.rowIds.back() != number[place.id])
             patch.rowIds.push_back(number[place.id]);
     patch.rowIds.shrink_to_fit();
-    const auto count = size_t(patch.count);
-    patch.rows.assign(patch.rowIds.size() * count, 0);
-    float* row = patch.rows.data();
+    patch.rows.reserve(patch.rowIds.size(), size_t(patch.count));
+    std::vector<float> row(size_t(patch.count), 0);
     for (size_t i = 0; i < places.size(); ++i) {
-        if (i > 0 && places[i].id != places[i - 1].id) row += count;
-        for (size_t k = 0; k < count; ++k) row[k] += places[i].factors[k];
+        places[i].rows->addTo(places[i].row, patch.scales, row);
+        if (i + 1 < places.size() && places[i + 1].id == places[i].id) continue;
+        patch.rows.push(row, patch.scales);
+        std::fill(row.begin(), row.end(), 0.0F);
     }
     for (Parts::Chunk* chunk : chunks) *chunk = {};
 }
@@ -370,27 +395,31 @@ void EquationBuilder::finish(const Progress& progress) {
             if (!held(chunk.patch))
                 for (const uint32_t id : chunk.ids) number[id] = 0;
     uint32_t rows = 0;
-    std::vector<uint32_t> pixelOfRow;
+    std::vector<uint32_t> idOfRow;
     for (uint32_t id = 0; id < ids; ++id) {
         if (number[id] == kNoRow) continue;
         number[id] = rows++;
-        pixelOfRow.push_back(id);
+        idOfRow.push_back(id);
     }
     m.rowCount = rows;
     m.targets.assign(size_t(rows) * size_t(mMesh.channels()), 0);
-    for (uint32_t row = 0; row < rows; ++row)
-        if (pixelOfRow[row] < m.pixelRows)
-            for (int c = 0; c < mMesh.channels(); ++c)
-                m.targets[size_t(c) * rows + row] = mPicture.plane(c)[pixelOfRow[row]];
+    for (uint32_t row = 0; row < rows && idOfRow[row] < m.cellRows; ++row) {
+        const float root = std::sqrt(mPicture.grid.area(idOfRow[row]));
+        for (int c = 0; c < mMesh.channels(); ++c)
+            m.targets[size_t(c) * rows + row] = root * mPicture.means.plane(c)[idOfRow[row]];
+    }
     for (const Parts& parts : mParts)
         for (const Parts::Chunk& chunk : parts.chunks)
-            for (size_t i = 0; held(chunk.patch) && i < chunk.ids.size(); ++i)
-                for (size_t c = 0; number[chunk.ids[i]] != kNoRow && c < size_t(mMesh.channels()); ++c)
-                    m.targets[c * rows + number[chunk.ids[i]]] -=
-                        chunk.factors[i * size_t(mMesh.channels()) + c];
+            for (size_t i = 0; held(chunk.patch) && i < chunk.ids.size(); ++i) {
+                if (number[chunk.ids[i]] == kNoRow) continue;
+                std::array<float, kMaxChannels> colours{};
+                const auto channels = size_t(mMesh.channels());
+                chunk.rows.addTo(i, scales(chunk.patch), {colours.data(), channels});
+                for (size_t c = 0; c < channels; ++c)
+                    m.targets[c * rows + number[chunk.ids[i]]] -= colours[c];
+            }
     for (ColorEquations::Seam& seam : m.seams) seam.firstRow = number[seam.firstRow];
-    m.pixelRows =
-        uint32_t(std::lower_bound(pixelOfRow.begin(), pixelOfRow.end(), m.pixelRows) - pixelOfRow.begin());
+    m.cellRows = uint32_t(std::lower_bound(idOfRow.begin(), idOfRow.end(), m.cellRows) - idOfRow.begin());
 
     parallelFor(m.patches.size(), 16, [&](size_t begin, size_t end) {
         for (size_t p = begin; p < end && !progress.stopRequested(); ++p)
@@ -409,11 +438,11 @@ void EquationBuilder::finish(const Progress& progress) {
 
 }  // namespace
 
-ColorEquations buildEquations(const PatchMesh& mesh, const Image& picture,
+ColorEquations buildEquations(const PatchMesh& mesh, const FitPicture& picture,
                               const std::vector<SiteChoice>& choices, const SeamWeights& weights,
                               int samplesPerSide, Progress& progress) {
     EquationBuilder builder(mesh, picture, choices, samplesPerSide);
-    builder.addPixels(progress);
+    builder.addCells(progress);
     builder.addSeams(weights, progress);
     if (!progress.stopRequested()) builder.finish(progress);
     return std::move(builder.m);

@@ -1,5 +1,5 @@
-// The linear least squares of the colour fit: an equation for each pixel, which is the mean of the colours
-// over its square, and equations by which patches agree along edges that are no features.
+// The linear least squares of the colour fit: an equation for each cell, which is the mean of the colours
+// over it, and equations by which patches agree along edges that are no features.
 #pragma once
 
 #include <array>
@@ -7,16 +7,17 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/image/image.h"
 #include "core/mesh/edge_blur.h"
 #include "core/mesh/newton_basis.h"
 #include "core/mesh/patch_mesh.h"
+#include "core/vectorize/fit_picture.h"
+#include "core/vectorize/packed_rows.h"
 #include "core/vectorize/site_pursuit.h"
 
 namespace tessera {
 
 // The unknowns are the Newton factors of each patch and channel; channels are independent of each other. An
-// equation of one patch alone goes into its Gram matrix. One of several patches (a pixel across an edge or
+// equation of one patch alone goes into its Gram matrix. One of several patches (a cell across an edge or
 // near a blurred feature, a point of a seam) is a row, whose factors lie with the patches.
 struct ColorEquations {
     // Matrices lie row after row.
@@ -25,8 +26,9 @@ struct ColorEquations {
         std::vector<float> gram;       // (count x count), symmetric; sums of floats
         std::vector<double> damping;   // count: to be added to its diagonal
         std::vector<double> moments;   // (channels x count)
+        std::vector<float> scales;     // count: of the rows' columns, about a function's largest value
         std::vector<uint32_t> rowIds;  // ascending
-        std::vector<float> rows;       // (rowIds.size() x count)
+        PackedRows rows;               // (rowIds.size() x count)
     };
     struct Entry {
         uint32_t patch;
@@ -39,7 +41,7 @@ struct ColorEquations {
     std::vector<Entry> entries;
     size_t rowCount = 0;
     std::vector<float> targets;  // (channels x rowCount)
-    uint32_t pixelRows = 0;      // rows from here on are of seams
+    uint32_t cellRows = 0;       // rows from here on are of seams
     // The rows of one edge, at points evenly spaced from end to end: colours, or by turns colours and
     // gradients. The square of what a row of colours comes to is weight * length * difference^2.
     struct Seam {
@@ -60,9 +62,10 @@ struct SeamWeights {
     double gradient = 0;  // C1: the same, of the difference a pixel off the edge
 };
 
-// `picture` in the mesh's basis; samplesPerSide^2 samples a pixel. Patches whose choice has no sites are
-// held: they have no unknowns, and the colours that they have count as known. Void where progress says stop.
-ColorEquations buildEquations(const PatchMesh& mesh, const Image& picture,
+// `picture` in the mesh's basis; samplesPerSide^2 samples a square of its grid. Patches whose choice has no
+// sites are held: they have no unknowns, and the colours that they have count as known. Void where progress
+// says stop.
+ColorEquations buildEquations(const PatchMesh& mesh, const FitPicture& picture,
                               const std::vector<SiteChoice>& choices, const SeamWeights& weights,
                               int samplesPerSide, Progress& progress);
 

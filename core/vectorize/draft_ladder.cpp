@@ -9,7 +9,7 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/newton_basis.h"
-#include "core/vectorize/patch_pixels.h"
+#include "core/vectorize/patch_cells.h"
 
 namespace tessera {
 
@@ -47,17 +47,17 @@ Factors constantFactors(const PatchMesh& mesh, PatchId p, const Image& picture) 
 }
 
 // The least squares over the patch's pixels of what `factors` leave, added to them.
-void fitTo(const PatchPixels& pixels, const Image& picture, const NewtonBasis& basis, Factors& factors) {
+void fitTo(const PatchCells& cells, const Image& picture, const NewtonBasis& basis, Factors& factors) {
     constexpr double kRidge = 1e-4;
-    const auto count = Eigen::Index(pixels.pixels.size());
+    const auto count = Eigen::Index(cells.cells.size());
     Eigen::Matrix<float, kTerms, Eigen::Dynamic, Eigen::RowMajor> rows(kTerms, count);
-    basis.evaluate(pixels.x.data(), pixels.y.data(), size_t(count), rows.data(), size_t(count));
+    basis.evaluate(cells.x.data(), cells.y.data(), size_t(count), rows.data(), size_t(count));
     Eigen::Matrix<float, Eigen::Dynamic, kMaxChannels> targets(count, kMaxChannels);
     targets.setZero();
     for (int c = 0; c < picture.channels(); ++c) {
         const float base = float(factors(0, c));
         for (Eigen::Index k = 0; k < count; ++k)
-            targets(k, c) = picture.plane(c)[pixels.pixels[size_t(k)].index] - base;
+            targets(k, c) = picture.plane(c)[cells.cells[size_t(k)].number] - base;
     }
     Gram gram = (rows * rows.transpose()).cast<double>();
     gram.diagonal().array() += kRidge * double(count);
@@ -66,16 +66,17 @@ void fitTo(const PatchPixels& pixels, const Image& picture, const NewtonBasis& b
 }
 
 void fitColours(const Image& picture, PatchMesh& mesh) {
-    const PixelSampler sampler(mesh, 1);
+    const FitGrid grid{picture.width(), picture.height(), 1, {}};
+    const CellSampler sampler(mesh, grid, 1);
     const std::array<uint8_t, kTerms> sites = draftSites();
     const NewtonBasis basis(sites);
     std::vector<Factors> factors(mesh.connectivity().faceCapacity());
     mesh.forEachPatch([&](PatchId p) { factors[p.index] = constantFactors(mesh, p, picture); });
     parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
-        PatchPixels pixels;
+        PatchCells cells;
         for (size_t i = begin; i < end; ++i) {
-            sampler.sample(i, pixels);
-            if (!pixels.pixels.empty()) fitTo(pixels, picture, basis, factors[sampler.patches()[i].index]);
+            sampler.sample(i, cells);
+            if (!cells.cells.empty()) fitTo(cells, picture, basis, factors[sampler.patches()[i].index]);
         }
     });
     mesh.setColourBasis(ColourBasis::Opponent);

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/mesh/newton_basis.h"
-#include "core/vectorize/patch_pixels.h"
+#include "core/vectorize/patch_cells.h"
 
 namespace tessera {
 
@@ -25,20 +26,20 @@ using ErrorCurves = std::array<std::vector<float>, kMaxChannels>;
 class Pursuit {
   public:
     // Among `sites`, of which the corners are the first.
-    Pursuit(const PatchPixels& pixels, const Image& picture, std::span<const uint8_t> sites, int maxTerms)
+    Pursuit(const PatchCells& cells, const Image& picture, std::span<const uint8_t> sites, int maxTerms)
         : mSites(sites),
           mTaken(Eigen::Index(sites.size()), maxTerms),
           mUsed(sites.size(), false),
           mChannels(picture.channels()) {
         const auto functions = Eigen::Index(sites.size());
-        const auto count = Eigen::Index(pixels.pixels.size());
+        const auto count = Eigen::Index(cells.cells.size());
         RowMajor rows(functions, count);
-        evaluateSiteFunctions(sites, pixels.x.data(), pixels.y.data(), size_t(count), rows.data(),
+        evaluateSiteFunctions(sites, cells.x.data(), cells.y.data(), size_t(count), rows.data(),
                               size_t(count));
         MatrixXd targets(count, mChannels);
         for (Eigen::Index k = 0; k < count; ++k)
             for (int c = 0; c < mChannels; ++c)
-                targets(k, c) = double(picture.plane(c)[pixels.pixels[size_t(k)].index]);
+                targets(k, c) = double(picture.plane(c)[cells.cells[size_t(k)].number]);
         mGram = MatrixXd::Zero(functions, functions);
         mGram.selfadjointView<Eigen::Lower>().rankUpdate(rows);
         mGram.triangularView<Eigen::StrictlyUpper>() = mGram.transpose();
@@ -131,9 +132,10 @@ void spend(const PatchMesh& mesh, const std::vector<ErrorCurves>& errors, double
     choose(high);
 }
 
-// What a search for so many terms a patch chooses from: few do not need places that lie close, and cost a
-// multiple of the time with them.
-std::vector<uint8_t> candidates(double termsPerPatch) {
+}  // namespace
+
+std::vector<uint8_t> candidateSites(double termsPerPatch) {
+    // Few terms do not need places that lie close, and cost a multiple of the time with them.
     constexpr double kFewTerms = 36;
     const int stride = termsPerPatch <= kFewTerms ? 2 : 1;
     static_assert(kSiteSubdivisions % 2 == 0);
@@ -146,23 +148,23 @@ std::vector<uint8_t> candidates(double termsPerPatch) {
     return sites;
 }
 
-}  // namespace
-
 std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, double termsPerPatch,
                                     Progress& progress) {
     const size_t capacity = mesh.connectivity().faceCapacity();
     std::vector<SiteChoice> choices(capacity);
     std::vector<ErrorCurves> errors(capacity);
-    const PixelSampler sampler(mesh, 1);
-    const std::vector<uint8_t> sites = candidates(termsPerPatch);
+    TESSERA_CHECK(picture.width() % mesh.width() == 0);
+    const FitGrid grid{mesh.width(), mesh.height(), picture.width() / mesh.width(), {}};
+    const CellSampler sampler(mesh, grid, 1);
+    const std::vector<uint8_t> sites = candidateSites(termsPerPatch);
     parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
-        PatchPixels pixels;
+        PatchCells cells;
         for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
-            sampler.sample(i, pixels);
-            if (pixels.pixels.empty()) continue;
+            sampler.sample(i, cells);
+            if (cells.cells.empty()) continue;
             const uint32_t p = sampler.patches()[i].index;
-            const int most = std::clamp(int(pixels.pixels.size()), kCorners, int(sites.size()));
-            Pursuit(pixels, picture, sites, most).run(most, choices[p].sites, errors[p]);
+            const int most = std::clamp(int(cells.cells.size()), kCorners, int(sites.size()));
+            Pursuit(cells, picture, sites, most).run(most, choices[p].sites, errors[p]);
         }
     });
     if (progress.stopRequested()) return {};

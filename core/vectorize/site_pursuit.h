@@ -17,10 +17,13 @@ struct SiteChoice {
     std::array<int, kMaxChannels> terms{};  // factors of each channel, 3 .. sites.size()
 };
 
-// By patch id. A channel of a patch has no more terms than there are sites, nor than the patch has pixels;
-// over all channels termsPerPatch on the average, at most. `picture` is in the mesh's basis and has hard
-// steps at features. Empty where progress says stop.
+// By patch id. A channel of a patch has no more terms than there are sites, nor than the patch has of its
+// pixels; over all channels termsPerPatch on the average, at most. `picture`, the mesh's or that enlarged by
+// a whole factor, is in the mesh's basis and has hard steps at features. Empty where progress says stop.
 std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, double termsPerPatch,
                                     Progress& progress);
+
+// What a search for so many terms a patch chooses from, the corners first.
+std::vector<uint8_t> candidateSites(double termsPerPatch);
 
 }  // namespace tessera

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/base/parallel.h"
 #include "core/mesh/colour_basis.h"
@@ -19,8 +20,11 @@ using Eigen::MatrixXf;
 using Eigen::VectorXd;
 using Eigen::VectorXf;
 
-// A pixel's square is sampled at 2 x 2 points, as the renderer does at x1.
-constexpr int kSamplesPerSide = 2;
+// A whole pixel is sampled at 2 x 2 points or more, as the renderer does at x1.
+int samplesPerSide(const FitGrid& grid) {
+    constexpr int kSamplesPerSide = 2;
+    return std::max(1, kSamplesPerSide / grid.perSide);
+}
 
 // Of the residual of the patches by themselves: to find the weight, and in the end.
 constexpr double kFirstTolerance = 1.5e-3, kTolerance = 5e-4;
@@ -36,12 +40,22 @@ double dot(const PatchVectors& a, const PatchVectors& b) {
     return sum;
 }
 
-using RowsOf = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
-RowsOf rowsOf(const ColorEquations::Patch& patch) {
-    return {patch.rows.data(), Eigen::Index(patch.rowIds.size()), patch.count};
+// The rows' first `columns` columns, row after row in columns of the result.
+MatrixXf unpackedRows(const ColorEquations::Patch& patch, int columns) {
+    MatrixXf rows = MatrixXf::Zero(columns, Eigen::Index(patch.rows.size()));
+    for (size_t i = 0; i < patch.rows.size(); ++i)
+        patch.rows.addTo(i, {patch.scales.data(), size_t(columns)},
+                         {rows.col(Eigen::Index(i)).data(), size_t(columns)});
+    return rows;
 }
 Eigen::Map<const MatrixXf> gramOf(const ColorEquations::Patch& patch) {
     return {patch.gram.data(), patch.count, patch.count};
+}
+std::span<const float> spanOf(const VectorXf& v) {
+    return {v.data(), size_t(v.size())};
+}
+Eigen::Map<const VectorXf> scalesOf(const ColorEquations::Patch& patch) {
+    return {patch.scales.data(), patch.count};
 }
 Eigen::Map<const VectorXd> dampingOf(const ColorEquations::Patch& patch) {
     return {patch.damping.data(), patch.count};
@@ -79,11 +93,10 @@ class ChannelSystem {
                     targets(Eigen::Index(i)) =
                         mWeights(patch.rowIds[i]) * m.targets[size_t(channel) * m.rowCount + patch.rowIds[i]];
                 }
-                const auto all = rowsOf(patch);
-                const auto rows = all.leftCols(n);
+                const MatrixXf rows = unpackedRows(patch, n);
                 mRight[p] = Eigen::Map<const VectorXd>(patch.moments.data() + channel * patch.count, n) +
-                            (rows.transpose() * targets).cast<double>();
-                const MatrixXf own = rows.transpose() * rowWeights.asDiagonal() * rows;
+                            (rows * targets).cast<double>();
+                const MatrixXf own = rows * rowWeights.asDiagonal() * rows.transpose();
                 MatrixXd normal = gramOf(patch).topLeftCorner(n, n).cast<double>() + own.cast<double>();
                 normal.diagonal() += dampingOf(patch).head(n);
                 mFactors[p] = normal.llt().matrixLLT().cast<float>();
@@ -105,7 +118,10 @@ class ChannelSystem {
 
     void apply(const PatchVectors& x, PatchVectors& ax) {
         forPatches([&](size_t p) {
-            mPartial[p].noalias() = rowsOf(m.patches[p]).leftCols(mTerms[p]) * x[p].cast<float>();
+            const auto& patch = m.patches[p];
+            const VectorXf scaled = x[p].cast<float>().cwiseProduct(scalesOf(patch).head(mTerms[p]));
+            mPartial[p].resize(Eigen::Index(patch.rows.size()));
+            patch.rows.multiply(spanOf(scaled), {mPartial[p].data(), patch.rows.size()});
         });
         parallelFor(size_t(mTotals.size()), 4096, [&](size_t begin, size_t end) {
             for (size_t row = begin; row < end; ++row) {
@@ -123,7 +139,9 @@ class ChannelSystem {
             const int n = mTerms[p];
             ax[p] = dampingOf(patch).head(n).cwiseProduct(x[p]);
             ax[p].noalias() += gramOf(patch).topLeftCorner(n, n).cast<double>() * x[p];
-            ax[p] += (rowsOf(patch).leftCols(n).transpose() * totals).cast<double>();
+            VectorXf sum(n);
+            patch.rows.multiplyTransposed(spanOf(totals), {sum.data(), size_t(n)});
+            ax[p] += sum.cwiseProduct(scalesOf(patch).head(n)).cast<double>();
         });
     }
 
@@ -276,10 +294,12 @@ Image inBasis(Image picture, ColourBasis basis) {
     return picture;
 }
 
-Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vector<SiteChoice>& choices,
-                              const VectorizeSettings& settings, StageReport& report, Progress& progress) {
+Result<PatchMesh> solveColors(PatchMesh mesh, const FitPicture& picture,
+                              const std::vector<SiteChoice>& choices, const VectorizeSettings& settings,
+                              StageReport& report, Progress& progress) {
     const SeamWeights seams{1, settings.seamGradientWeight};
-    const ColorEquations equations = buildEquations(mesh, image, choices, seams, kSamplesPerSide, progress);
+    const ColorEquations equations =
+        buildEquations(mesh, picture, choices, seams, samplesPerSide(picture.grid), progress);
     if (!progress.step(.6)) return stopped();
 
     std::array<PatchVectors, kMaxChannels> factors;
@@ -302,25 +322,25 @@ Result<PatchMesh> solveColors(PatchMesh mesh, const Image& image, const std::vec
         if (last) break;
         seamWeight = search.next(seamWeight,
                                  seamExcess(equations, choices, factors, mesh.channels(), weights, settings));
-        weights.tail(weights.size() - equations.pixelRows).setConstant(float(seamWeight));
+        weights.tail(weights.size() - equations.cellRows).setConstant(float(seamWeight));
     }
     report.figures.push_back({"seam weight", seamWeight});
     mesh.setColourBasis(ColourBasis::Opponent);
     const size_t terms = setSplines(mesh, equations, factors);
     report.figures.push_back({"terms", double(terms)});
-    report.figures.push_back({"shared pixels", double(equations.pixelRows)});
+    report.figures.push_back({"shared cells", double(equations.cellRows)});
     report.figures.push_back({"iterations", double(iterations)});
     return mesh;
 }
 
-std::vector<PatchId> refitColors(PatchMesh& mesh, const Image& picture,
+std::vector<PatchId> refitColors(PatchMesh& mesh, const FitPicture& picture,
                                  const std::vector<SiteChoice>& choices, double seamGradientWeight,
                                  double seamWeight) {
     Progress progress;
-    const ColorEquations equations =
-        buildEquations(mesh, picture, choices, {1, seamGradientWeight}, kSamplesPerSide, progress);
+    const ColorEquations equations = buildEquations(mesh, picture, choices, {1, seamGradientWeight},
+                                                    samplesPerSide(picture.grid), progress);
     VectorXf weights = VectorXf::Ones(Eigen::Index(equations.rowCount));
-    weights.tail(weights.size() - equations.pixelRows).setConstant(float(seamWeight));
+    weights.tail(weights.size() - equations.cellRows).setConstant(float(seamWeight));
     std::array<PatchVectors, kMaxChannels> factors;
     int iterations = 0;
     for (int c = 0; c < mesh.channels(); ++c) {

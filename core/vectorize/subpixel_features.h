@@ -16,7 +16,7 @@
 namespace tessera {
 
 // Sigma of a feature's blur, in px: the least and the most that is told apart.
-constexpr float kLeastBlurPx = .3F, kMostBlurPx = 4;
+constexpr float kLeastBlurPx = .1F, kMostBlurPx = 4;
 
 // Image coordinates in px. The blur is that of the picture before its pixels averaged it over their squares:
 // the standard deviation in px of the Gaussian that makes a step what is seen. jump is the colour on the

@@ -7,11 +7,13 @@
 #include <memory>
 
 #include "core/base/parallel.h"
+#include "core/image/resample.h"
 #include "core/mesh/colour_basis.h"
 #include "core/vectorize/bend_edges.h"
 #include "core/vectorize/features.h"
 #include "core/vectorize/fit_colors.h"
 #include "core/vectorize/fit_curves.h"
+#include "core/vectorize/fit_picture.h"
 #include "core/vectorize/initial_mesh.h"
 #include "core/vectorize/polynomial_fit.h"
 #include "core/vectorize/refine.h"
@@ -124,6 +126,24 @@ Result<FeatureNetwork> findNetwork(const Image& image, const VectorizeSettings& 
     return network;
 }
 
+// Stage "colours", variant "joint". `sharp`, in the opponent basis, is the picture without the network's
+// blur.
+Result<PatchMesh> fitSplines(PatchMesh mesh, const Image& image, Image sharp, const FeatureNetwork& network,
+                             const VectorizeSettings& settings, StageReport& report, Progress& progress) {
+    FitPicture picture(Image{});
+    if (const int perSide = squaresPerSide(mesh, settings.termsPerPatch); perSide > 1) {
+        Image fine = enlargedMeans(image, perSide, progress.stopToken());
+        sharp = inBasis(virtualSharp(fine, network, progress.stopToken()), ColourBasis::Opponent);
+        picture = FitPicture(mesh, inBasis(image, ColourBasis::Opponent),
+                             inBasis(std::move(fine), ColourBasis::Opponent));
+    }
+    const auto sites = chooseSites(mesh, sharp, settings.termsPerPatch, progress);
+    sharp = Image();
+    if (!progress.step(.3)) return stopped();
+    if (picture.means.empty()) picture = FitPicture(inBasis(image, ColourBasis::Opponent));
+    return solveColors(std::move(mesh), picture, sites, settings, report, progress);
+}
+
 // The default method: features cut out of their blur, a mesh by the true error of the fit, one joint solve.
 Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& settings,
                                const std::map<std::string, std::string>& variants, Progress& progress,
@@ -142,7 +162,6 @@ Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& sett
     });
     if (!cut) return tl::unexpected(cut.error());
     if (observe.cutMesh) observe.cutMesh(*cut);
-    network = FeatureNetwork{};
 
     // Large pictures are most of the memory: each lives no longer than the stage that needs it.
     sharp = inBasis(std::move(sharp), ColourBasis::Opponent);
@@ -169,11 +188,7 @@ Result<VectorImage> runDefault(const Image& image, const VectorizeSettings& sett
     if (observe.curves) observe.curves(*curved);
 
     auto coloured = run("colours", [&](StageReport& r) -> Result<PatchMesh> {
-        const auto sites = chooseSites(*curved, sharp, settings.termsPerPatch, progress);
-        sharp = Image();
-        if (!progress.step(.3)) return stopped();
-        return solveColors(std::move(*curved), inBasis(image, ColourBasis::Opponent), sites, settings, r,
-                           progress);
+        return fitSplines(std::move(*curved), image, std::move(sharp), *network, settings, r, progress);
     });
     if (!coloured) return tl::unexpected(coloured.error());
     result.mesh = std::move(*coloured);

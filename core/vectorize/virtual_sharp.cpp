@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/mesh/blur_profile.h"
 
@@ -109,14 +110,17 @@ std::vector<Strand> strandsOf(const FeatureNetwork& network) {
 // The rows [top, top + rows) of the picture, one strand after the other.
 class Band {
   public:
-    Band(Image& image, int top)
+    Band(Image& image, int perSide, int top)
         : mImage(image),
+          mPerSide(perSide),
           mTop(top),
           mRows(std::min(kBandRows, image.height() - top)),
           mNearest(size_t(image.width()) * size_t(mRows)) {}
 
     void apply(const Strand& strand) {
-        if (strand.top - strand.reach > mTop + mRows || strand.bottom + strand.reach < mTop) return;
+        const double reach = double(strand.reach);
+        if ((strand.top - reach) * mPerSide > mTop + mRows || (strand.bottom + reach) * mPerSide < mTop)
+            return;
         for (uint32_t i = 0; i + 1 < strand.knots.size(); ++i) visit(strand, i);
         for (const uint32_t pixel : mTouched) sharpen(strand, pixel);
         mTouched.clear();
@@ -128,17 +132,21 @@ class Band {
         float square = 0, t = 0;
     };
 
+    // Of a pixel of mImage, in px of the picture.
+    glm::dvec2 centre(int x, int y) const { return glm::dvec2(x + .5, y + .5) / double(mPerSide); }
+
     void visit(const Strand& strand, uint32_t piece) {
         const Knot &a = strand.knots[piece], &b = strand.knots[piece + 1];
         const double reach = kBlurReach * std::max(a.deviation, b.deviation);
-        const glm::dvec2 low = glm::min(a.position, b.position) - reach - .5, d = b.position - a.position,
-                         high = glm::max(a.position, b.position) + reach - .5;
+        const glm::dvec2 low = (glm::min(a.position, b.position) - reach) * double(mPerSide) - .5,
+                         d = b.position - a.position,
+                         high = (glm::max(a.position, b.position) + reach) * double(mPerSide) - .5;
         const int x0 = std::max(int(std::ceil(low.x)), 0), x1 = std::min(int(high.x), mImage.width() - 1);
         const int y0 = std::max(int(std::ceil(low.y)), mTop), y1 = std::min(int(high.y), mTop + mRows - 1);
         const double dd = std::max(glm::dot(d, d), 1e-12);
         for (int y = y0; y <= y1; ++y)
             for (int x = x0; x <= x1; ++x) {
-                const glm::dvec2 r = glm::dvec2(x + .5, y + .5) - a.position;
+                const glm::dvec2 r = centre(x, y) - a.position;
                 const double t = std::clamp(glm::dot(r, d) / dd, 0.0, 1.0);
                 const glm::dvec2 off = r - t * d;
                 const auto square = float(glm::dot(off, off));
@@ -160,7 +168,7 @@ class Band {
         const int x = int(pixel) % mImage.width(), y = mTop + int(pixel) / mImage.width();
         const glm::dvec2 d = b.position - a.position;
         const glm::dvec2 normal = t <= 0 ? a.normal : t >= 1 ? b.normal : glm::dvec2(-d.y, d.x);
-        const glm::dvec2 off = glm::dvec2(x + .5, y + .5) - (t >= 1 ? b.position : a.position);
+        const glm::dvec2 off = centre(x, y) - (t >= 1 ? b.position : a.position);
         const auto signedShare = float(glm::dot(off, normal) >= 0 ? share : -share);
         for (int c = 0; c < mImage.channels(); ++c) {
             const auto i = size_t(c);
@@ -169,6 +177,7 @@ class Band {
     }
 
     Image& mImage;
+    int mPerSide;
     int mTop, mRows;
     std::vector<Nearest> mNearest;
     std::vector<uint32_t> mTouched;
@@ -177,12 +186,14 @@ class Band {
 }  // namespace
 
 Image virtualSharp(const Image& image, const FeatureNetwork& network, const std::stop_token& stop) {
+    TESSERA_CHECK(image.width() % network.width == 0);
     Image sharp = image;
+    const int perSide = image.width() / network.width;
     const std::vector<Strand> strands = strandsOf(network);
     const size_t bands = (size_t(image.height()) + kBandRows - 1) / kBandRows;
     parallelFor(bands, 1, [&](size_t begin, size_t end) {
         for (size_t b = begin; b < end && !stop.stop_requested(); ++b) {
-            Band band(sharp, int(b) * kBandRows);
+            Band band(sharp, perSide, int(b) * kBandRows);
             for (const Strand& strand : strands) band.apply(strand);
         }
     });

@@ -201,7 +201,7 @@ TEST(Recolour, AFeatheredBorderIsNone) {
     PatchMesh mesh = scene();
     const SeamStatistics before = measureSeams(mesh);
     PatchSet set = {PatchId(10)};
-    for (int i = 0; i < 4; ++i) set = grown(mesh, set);
+    for (int i = 0; i < 5; ++i) set = grown(mesh, set);
     const Touched touched = recolour(mesh, set, Levels{.3, 0}, {20});
     EXPECT_THAT(touched.edges, IsEmpty());
     const SeamStatistics after = measureSeams(mesh);

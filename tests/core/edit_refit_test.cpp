@@ -59,18 +59,25 @@ double errorOver(const PatchMesh& mesh, const Image& image, const PatchSet& set)
 }
 
 TEST(RefitColours, MendsWhatAReshapeLeaves) {
-    PatchMesh mesh = scene();
+    const PatchMesh start = scene();
+    const glm::dvec2 offset{5, 3};
+    // A vertex off features whose drag is seen.
     VertexId v;
-    mesh.forEachVertex([&](VertexId candidate) {
-        bool free = !mesh.connectivity().onBorder(candidate);
-        mesh.connectivity().forEachOutgoing(
-            candidate, [&](HalfedgeId h) { free = free && !mesh.curve(HalfedgeMesh::edge(h)).feature; });
-        if (free && !v.valid()) v = candidate;
+    start.forEachVertex([&](VertexId candidate) {
+        bool free = !v.valid() && !start.connectivity().onBorder(candidate);
+        start.connectivity().forEachOutgoing(
+            candidate, [&](HalfedgeId h) { free = free && !start.curve(HalfedgeMesh::edge(h)).feature; });
+        if (!free) return;
+        PatchMesh moved = start;
+        const ShapeDrag drag(start, {ControlPointRef::of(candidate)});
+        drag.drag(moved, offset);
+        if (errorOver(moved, photo(), drag.patches()) > 3 * errorOver(start, photo(), drag.patches()))
+            v = candidate;
     });
     ASSERT_TRUE(v.valid());
-    const PatchMesh start = mesh;
+    PatchMesh mesh = start;
     const ShapeDrag drag(start, {ControlPointRef::of(v)});
-    drag.drag(mesh, {5, 3});
+    drag.drag(mesh, offset);
     const PatchMesh dragged = mesh;
     const double before = errorOver(mesh, photo(), drag.patches());
     const SeamStatistics seams = measureSeams(scene());

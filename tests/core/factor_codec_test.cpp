@@ -43,8 +43,8 @@ class FittedDocument : public ::testing::Test {
         Document d;
         const Image opponent = inBasis(image, ColourBasis::Opponent);
         const PatchMesh grid = testing::gridMesh(128, 96, 8, 6);
-        auto mesh =
-            solveColors(grid, opponent, chooseSites(grid, opponent, 48, progress), {}, report, progress);
+        auto mesh = solveColors(grid, FitPicture(opponent), chooseSites(grid, opponent, 48, progress), {},
+                                report, progress);
         ASSERT_TRUE(mesh);
         d.mesh = *mesh;
         d.difference.emplace();

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "core/image/image_compare.h"
 #include "core/image/resample.h"
 #include "tests/support/painted_image.h"
 
@@ -93,6 +94,17 @@ TEST(Resample, MagnifiesARampExactlyAwayFromTheBorder) {
         // Neither reproduces ramps to the last bit; half a pixel off would be .0075.
         EXPECT_LT(worst, .003);
     }
+}
+
+TEST(Resample, EnlargedMeansHaveTheSameMeans) {
+    const Image large = paint(96, 96, 3, [](double x, double y, int c) {
+        return .5 + .2 * std::sin(.4 * x + c) + .2 * std::cos(.3 * y - .2 * x);
+    });
+    const Image small = boxDownsample(large, 3);
+    const Image enlarged = enlargedMeans(small, 3), bicubic = upsample(small, 3, ResampleFilter::Bicubic);
+    const auto off = [](const Image& a, const Image& b) { return compareImages(a, b)->rmse; };
+    EXPECT_LT(off(boxDownsample(enlarged, 3), small), .05 * off(boxDownsample(bicubic, 3), small));
+    EXPECT_LT(off(enlarged, large), .8 * off(bicubic, large));
 }
 
 TEST(Resample, TheFiltersDiffer) {

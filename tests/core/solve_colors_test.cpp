@@ -44,7 +44,7 @@ PatchMesh solved(const Image& image, const VectorizeSettings& settings, PatchMes
     Progress progress;
     const Image opponent = inBasis(image, ColourBasis::Opponent);
     const auto sites = chooseSites(mesh, opponent, settings.termsPerPatch, progress);
-    auto result = solveColors(std::move(mesh), opponent, sites, settings, report, progress);
+    auto result = solveColors(std::move(mesh), FitPicture(opponent), sites, settings, report, progress);
     EXPECT_TRUE(result.has_value());
     return *result;
 }

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/parallel.h"
+#include "core/image/resample.h"
 #include "tests/support/blurred_shapes.h"
 
 namespace tessera {
@@ -52,6 +53,20 @@ TEST(VirtualSharp, CrossedPixelsTakeTheSideOfTheirCentre) {
             const double d = glm::distance(glm::dvec2(x + .5, y + .5), centre) - 18;
             if (std::abs(d) < .1) continue;
             EXPECT_NEAR(sharp.at(x, y, 0), d < 0 ? .8 : .2, .05) << x << " " << y;
+        }
+}
+
+// A picture enlarged, whose blur is wider in its own pixels, with the network of the picture before.
+TEST(VirtualSharp, AnEnlargedPictureBecomesHardToo) {
+    const glm::dvec2 centre(32.3, 31.6);
+    const Image blurred = blurredDisc(64, centre, 18, .8, Colour(.8), Colour(.2));
+    const Image sharp = virtualSharp(enlargedMeans(blurred, 2), networkOf(blurred));
+    ASSERT_EQ(sharp.width(), 128);
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 128; ++x) {
+            const double d = glm::distance(glm::dvec2(x + .5, y + .5) / 2.0, centre) - 18;
+            if (std::abs(d) < .3) continue;
+            EXPECT_NEAR(sharp.at(x, y, 0), d < 0 ? .8 : .2, .06) << x << " " << y;
         }
 }
 

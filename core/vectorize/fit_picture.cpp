@@ -1,0 +1,67 @@
+// See fit_picture.h.
+#include "core/vectorize/fit_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/mesh/bezier.h"
+#include "core/mesh/blur_profile.h"
+#include "core/vectorize/site_pursuit.h"
+
+namespace tessera {
+
+namespace {
+
+// What an enlargement makes of a step reaches so far.
+constexpr double kStepPx = 2;
+
+// Marks the pixels whose centres are within `reach` px of `curve`.
+void markNear(const BezierCurve& curve, double reach, FitGrid& grid) {
+    constexpr double kSpacingPx = .5;
+    const int pieces = int(std::ceil(curve.length() / kSpacingPx)) + 1;
+    for (int i = 0; i <= pieces; ++i) {
+        const glm::dvec2 p = curve.at(double(i) / pieces);
+        const int x0 = std::max(int(p.x - reach), 0), x1 = std::min(int(p.x + reach), grid.width - 1);
+        const int y0 = std::max(int(p.y - reach), 0), y1 = std::min(int(p.y + reach), grid.height - 1);
+        for (int y = y0; y <= y1; ++y)
+            for (int x = x0; x <= x1; ++x)
+                if (glm::distance(p, {x + .5, y + .5}) <= reach)
+                    grid.whole[size_t(y) * size_t(grid.width) + size_t(x)] = 1;
+    }
+}
+
+}  // namespace
+
+FitPicture::FitPicture(const PatchMesh& mesh, const Image& picture, Image fine)
+    : grid{picture.width(), picture.height(), fine.width() / picture.width(), {}}, means(std::move(fine)) {
+    TESSERA_CHECK(means.width() == picture.width() * grid.perSide &&
+                  means.height() == picture.height() * grid.perSide);
+    grid.whole.assign(picture.planeSize(), 0);
+    mesh.forEachEdge([&](EdgeId e) {
+        const EdgeCurve& curve = mesh.curve(e);
+        if (!curve.feature) return;
+        const double blur = kBlurReach * double(std::max(curve.blurSigma[0], curve.blurSigma[1]));
+        markNear(toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e))), std::max(kStepPx, blur), grid);
+    });
+    parallelFor(size_t(grid.height), 16, [&](size_t begin, size_t end) {
+        for (int c = 0; c < picture.channels(); ++c)
+            for (int y = int(begin); y < int(end); ++y)
+                for (int x = 0; x < grid.width; ++x)
+                    if (grid.whole[size_t(y) * size_t(grid.width) + size_t(x)])
+                        means.at(x * grid.perSide, y * grid.perSide, c) = picture.at(x, y, c);
+    });
+}
+
+int squaresPerSide(const PatchMesh& mesh, double termsPerPatch) {
+    constexpr double kSquaresPerSite = 2.5;
+    constexpr int kMost = 3;
+    const double wanted =
+        kSquaresPerSite * double(candidateSites(termsPerPatch).size()) * double(mesh.patchCount());
+    const double pixels = double(mesh.width()) * mesh.height();
+    return std::clamp(int(std::ceil(std::sqrt(wanted / pixels))), 1, kMost);
+}
+
+}  // namespace tessera

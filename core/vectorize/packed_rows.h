@@ -1,0 +1,41 @@
+// Rows of a matrix in half the memory of floats: 16-bit integers times a scale of the column, which the
+// caller keeps, and one of the row.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tessera {
+
+class PackedRows {
+  public:
+    // `columnScales`, one a column and above 0, is what an entry is measured in; where all entries of a row
+    // are about as large, so measured, each is off by at most 1/65534 of itself.
+    void push(std::span<const float> row, std::span<const float> columnScales);
+    // Adds row i to `row`.
+    void addTo(size_t i, std::span<const float> columnScales, std::span<float> row) const;
+
+    size_t size() const { return mScales.size(); }
+    void reserve(size_t rows, size_t columns);
+    void shrink();
+
+    // The products of all rows with x, whose entries are by the first columns and already times the columns'
+    // scales.
+    void multiply(std::span<const float> x, std::span<float> products) const;
+    // The sum of all rows times their factor, over the first sum.size() columns; yet to be multiplied with
+    // the columns' scales.
+    void multiplyTransposed(std::span<const float> factors, std::span<float> sum) const;
+
+  private:
+    // Rows are filled up with zeros to whole groups.
+    static constexpr size_t kGroup = 8;
+    static size_t padded(size_t columns) { return (columns + kGroup - 1) / kGroup * kGroup; }
+
+    size_t mStride = 0;
+    std::vector<int16_t> mEntries;
+    std::vector<float> mScales;  // by row
+};
+
+}  // namespace tessera
