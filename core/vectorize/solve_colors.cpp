@@ -294,13 +294,13 @@ Image inBasis(Image picture, ColourBasis basis) {
     return picture;
 }
 
-Result<PatchMesh> solveColors(PatchMesh mesh, const FitPicture& picture,
-                              const std::vector<SiteChoice>& choices, const VectorizeSettings& settings,
-                              StageReport& report, Progress& progress) {
+Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vector<SiteChoice>& choices,
+                              const VectorizeSettings& settings, StageReport& report, Progress& progress) {
     const SeamWeights seams{1, settings.seamGradientWeight};
     const ColorEquations equations =
         buildEquations(mesh, picture, choices, seams, samplesPerSide(picture.grid), progress);
     if (!progress.step(.6)) return stopped();
+    picture = FitPicture(Image());  // a good part of the memory, with large pictures
 
     std::array<PatchVectors, kMaxChannels> factors;
     VectorXf weights = VectorXf::Ones(Eigen::Index(equations.rowCount));

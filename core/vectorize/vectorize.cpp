@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/image/resample.h"
 #include "core/mesh/colour_basis.h"
@@ -141,7 +142,7 @@ Result<PatchMesh> fitSplines(PatchMesh mesh, const Image& image, Image sharp, co
     sharp = Image();
     if (!progress.step(.3)) return stopped();
     if (picture.means.empty()) picture = FitPicture(inBasis(image, ColourBasis::Opponent));
-    return solveColors(std::move(mesh), picture, sites, settings, report, progress);
+    return solveColors(std::move(mesh), std::move(picture), sites, settings, report, progress);
 }
 
 // The default method: features cut out of their blur, a mesh by the true error of the fit, one joint solve.
@@ -238,6 +239,7 @@ Result<VectorImage> vectorize(const Image& image, const VectorizeSettings& setti
         const auto run = settings.method == "paper" ? runPaper : runDefault;
         result = run(image, settings, *variants, progress, observe);
     });
+    releaseFreeMemory();  // the colours' equations are thousands of parts
     return result;
 }
 
