@@ -223,7 +223,8 @@ void printRuns(const std::vector<Json>& runs) {
     for (const Column& column :
          {Column{"total s", "seconds"}, Column{"CPU s", "cpu_seconds"}, Column{"MB", "peak_rss_mb", 1},
           Column{"kB", "bytes", 1, 1e-3}, Column{"PSNR decoded", "psnr_decoded"},
-          Column{"loss dB", "codec_loss_db", 3}})
+          Column{"loss dB", "codec_loss_db", 3}, Column{"JPEG kB", "jpeg_bytes", 1, 1e-3},
+          Column{"of JPEG", "bytes_of_jpeg"}})
         cost.push_back(column);
     printFigures("Cost", columns(cost), rows);
 }
