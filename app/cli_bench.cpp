@@ -12,6 +12,7 @@
 #include "app/cli_bench_features.h"
 #include "app/cli_bench_magnify.h"
 #include "app/cli_bench_measure.h"
+#include "app/cli_bench_peer.h"
 #include "app/cli_bench_shapes.h"
 #include "app/cli_bench_table.h"
 #include "app/cli_support.h"
@@ -34,6 +35,7 @@ struct Arguments {
     std::vector<std::string> settings;
     QualityArguments quality;  // of the methods that have it
     std::string jsonFile;
+    std::string peer;  // a command, or empty
     int threads = 0;
     bool times4 = false;
     bool quiet = false;
@@ -41,7 +43,7 @@ struct Arguments {
 
 // One thing to measure, and the table that it is a row of.
 struct Job {
-    enum class Table { Runs, Magnified, Shapes };
+    enum class Table { Peers, Runs, Magnified, Shapes };
     Table table;
     Json name;  // the row's first columns
     std::function<Result<Json>()> measure;
@@ -106,17 +108,22 @@ Result<VectorizeSettings> settingsOf(const Arguments& arguments, const std::stri
 // Every measurement that is asked for, or why one of them makes no sense.
 Result<std::vector<Job>> jobsOf(const Arguments& arguments, const std::vector<std::string>& pictures) {
     std::vector<Job> jobs;
-    for (const std::string& path : pictures)
+    for (const std::string& path : pictures) {
+        const std::string name = fs::path(path).stem().string();
+        if (!arguments.peer.empty())
+            jobs.push_back({Job::Table::Peers, {{"picture", name}}, [path, command = arguments.peer] {
+                                return measurePeer(command, path);
+                            }});
         for (const std::string& method : arguments.methods)
             for (const int patches : arguments.patches) {
                 const auto settings = settingsOf(arguments, method, patches);
                 if (!settings) return tl::unexpected(settings.error());
-                jobs.push_back({Job::Table::Runs,
-                                {{"picture", fs::path(path).stem().string()},
-                                 {"method", settings->method},
-                                 {"wanted", settings->patches}},
-                                [path, s = *settings] { return measureRun(path, s); }});
+                jobs.push_back(
+                    {Job::Table::Runs,
+                     {{"picture", name}, {"method", settings->method}, {"wanted", settings->patches}},
+                     [path, s = *settings] { return measureRun(path, s); }});
             }
+    }
     if (!arguments.times4) return jobs;
     for (const std::string& path : pictures)
         for (const std::string& method : arguments.methods)
@@ -144,22 +151,48 @@ Result<Json> readAll(const std::vector<std::string>& pictures) {
 }
 
 struct Tables {
+    Json peer;  // of the picture whose runs come next
     std::vector<Json> runs, magnified, shapes;
 
-    std::vector<Json>& of(Job::Table table) {
-        return table == Job::Table::Runs ? runs : table == Job::Table::Magnified ? magnified : shapes;
-    }
+    void add(Job::Table table, Json row);
 };
+
+void Tables::add(Job::Table table, Json row) {
+    switch (table) {
+        case Job::Table::Peers:
+            peer = std::move(row);
+            return;
+        case Job::Table::Runs:
+            if (!peer.is_null()) {
+                row.update(peer);
+                row["cpu_of_peer"] = row["cpu_seconds"].get<double>() / row["peer_cpu_seconds"].get<double>();
+            }
+            runs.push_back(std::move(row));
+            return;
+        case Job::Table::Magnified:
+            magnified.push_back(std::move(row));
+            return;
+        case Job::Table::Shapes:
+            shapes.push_back(std::move(row));
+            return;
+    }
+}
+
+std::string labelOf(const Job& job) {
+    std::string label;
+    for (const auto& [key, value] : job.name.items())
+        label += (value.is_string() ? value.get<std::string>() : value.dump()) + " ";
+    label.pop_back();
+    if (job.table == Job::Table::Peers) return label + " peer";
+    return job.table == Job::Table::Runs ? label : "x4: " + label;
+}
 
 Result<Tables> measureAll(const Arguments& arguments, const std::vector<Job>& jobs, std::stop_token stop) {
     ProgressDisplay display(arguments.quiet);
     Tables tables;
     for (size_t i = 0; i < jobs.size(); ++i) {
         const Job& job = jobs[i];
-        std::string label = job.table == Job::Table::Runs ? "" : "x4: ";
-        for (const auto& [key, value] : job.name.items())
-            label += (value.is_string() ? value.get<std::string>() : value.dump()) + " ";
-        label.pop_back();
+        const std::string label = labelOf(job);
         display.show(label, double(i) / double(jobs.size()));
         auto figures = inChild(
             [&] {
@@ -176,7 +209,7 @@ Result<Tables> measureAll(const Arguments& arguments, const std::vector<Job>& jo
         }
         Json row = job.name;
         row.update(*figures);
-        tables.of(job.table).push_back(std::move(row));
+        tables.add(job.table, std::move(row));
     }
     return tables;
 }
@@ -223,8 +256,13 @@ void printRuns(const std::vector<Json>& runs) {
     for (const Column& column :
          {Column{"total s", "seconds"}, Column{"CPU s", "cpu_seconds"}, Column{"MB", "peak_rss_mb", 1},
           Column{"kB", "bytes", 1, 1e-3}, Column{"PSNR decoded", "psnr_decoded"},
-          Column{"loss dB", "codec_loss_db", 3}})
+          Column{"loss dB", "codec_loss_db", 3}, Column{"JPEG kB", "jpeg_bytes", 1, 1e-3},
+          Column{"of JPEG", "bytes_of_jpeg"}})
         cost.push_back(column);
+    if (runs.front().contains("cpu_of_peer")) {
+        cost.push_back({"peer CPU s", "peer_cpu_seconds"});
+        cost.push_back({"CPU of peer", "cpu_of_peer"});
+    }
     printFigures("Cost", columns(cost), rows);
 }
 
@@ -250,6 +288,7 @@ Json toJson(const Arguments& arguments, const Tables& tables) {
     Json json;
     json["version"] = TESSERA_VERSION;
     json["settings"] = arguments.settings;
+    if (!arguments.peer.empty()) json["peer"] = arguments.peer;
     json["runs"] = tables.runs;
     json["means"] = meansOf(tables.runs, {"method", "wanted"});
     if (!arguments.times4) return json;
@@ -261,6 +300,8 @@ Json toJson(const Arguments& arguments, const Tables& tables) {
 }
 
 int run(const Arguments& arguments) {
+    if (!arguments.peer.empty())
+        if (const auto checked = checkPeer(arguments.peer); !checked) return report(checked.error());
     const auto pictures = picturesIn(arguments.inputs);
     if (!pictures) return report(pictures.error());
     const auto jobs = jobsOf(arguments, *pictures);
@@ -295,6 +336,8 @@ constexpr const char* kFooter =
     "Errors are those of 'compare', of a rendering with 4 samples a pixel. seam: mean difference of colours\n"
     "across edges that are no features. slivers: patches whose base triangle has an angle below 8 degrees.\n"
     "folds: what 'validate' finds. kB: the document without the photo; loss dB: what storing it costs.\n"
+    "JPEG kB: a JPEG, 4:2:0 with optimized tables, of the stored document's PSNR; of JPEG: kB over it.\n"
+    "--peer: a command for the shell, run once for each picture before it; CPU s of all its processes.\n"
     "Reference edges: OpenCV's Canny on 8-bit luma, thresholds 100 and 200, chains of at least 20 pixels.\n"
     "recall: their part within 1 px of a feature. error at edges: mean error within 2 px of them over that\n"
     "of the picture. --times4 uses as many patches as store no more coefficients than the small picture has\n"
@@ -321,6 +364,10 @@ void addBenchCommand(CLI::App& app, int& exitCode) {
         ->allow_extra_args(false);
     addQualityOptions(*command, arguments->quality);
     command->add_option("--json", arguments->jsonFile, "Write every figure to this file")->type_name("FILE");
+    command
+        ->add_option("--peer", arguments->peer,
+                     "Another program to time beside these; {in} stands for the picture")
+        ->type_name("COMMAND");
     command->add_flag("--times4", arguments->times4,
                       "Shrink by 4, vectorize, magnify by 4; beside bicubic and Lanczos");
     command

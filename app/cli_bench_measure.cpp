@@ -10,6 +10,7 @@
 #include "app/cli_document_facts.h"
 #include "core/document/codec.h"
 #include "core/export/rasterize.h"
+#include "core/image/jpeg_reference.h"
 #include "core/mesh/mesh_validate.h"
 #include "core/vectorize/vectorize.h"
 
@@ -55,7 +56,8 @@ Result<ImageDifference> differenceOf(const PatchMesh& mesh, const Image& picture
     return difference;
 }
 
-// "bytes", and the error of what a reader of the file gets, whose drop is the codec's loss.
+// "bytes", the error of what a reader of the file gets, whose drop is the codec's loss, and what a JPEG with
+// that error takes.
 Result<void> addCodec(Json& row, const VectorImage& vectorized, const VectorizeSettings& settings,
                       const Image& picture, const ImageDifference& errors) {
     Document document;
@@ -72,6 +74,10 @@ Result<void> addCodec(Json& row, const VectorImage& vectorized, const VectorizeS
     row["bytes"] = bytes->size();
     row["psnr_decoded"] = difference->psnr;
     row["codec_loss_db"] = errors.psnr - difference->psnr;
+    const auto jpeg = referenceJpegBytes(picture, difference->psnr);
+    if (!jpeg) return tl::unexpected(jpeg.error());
+    row["jpeg_bytes"] = *jpeg ? Json(**jpeg) : Json();
+    row["bytes_of_jpeg"] = *jpeg ? Json(double(bytes->size()) / **jpeg) : Json();
     return {};
 }
 

@@ -157,10 +157,13 @@ TESSERA_VECTOR_CLONES std::pair<float, float> extent(const float* values, size_t
         lo = value < lo ? value : lo;
         hi = value > hi ? value : hi;
     }
-    std::pair<float, float> result{lo[0], hi[0]};
-    for (size_t k = 1; k < kVector; ++k)
-        result = {std::min(result.first, lo[k]), std::max(result.second, hi[k])};
-    return result;
+    float least = lo[0], largest = hi[0];
+    for (size_t k = 1; k < kVector; ++k) {
+        const float low = lo[k], high = hi[k];
+        least = std::min(least, low);
+        largest = std::max(largest, high);
+    }
+    return {least, largest};
 }
 
 // The nearest points of a feature.

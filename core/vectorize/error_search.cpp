@@ -11,20 +11,19 @@ namespace tessera {
 
 namespace {
 
-constexpr int kRuns = 3;
-// Of log error over log patches: what photographs have on the average, and what is believed of a secant.
-constexpr double kUsualSlope = -.42, kSteepest = -.9, kFlattest = -.2;
-// What a standard run leaves of a draft's error.
-constexpr double kOfDraft = .82;
-// So close to the goal a draft tells enough.
-constexpr double kNear = 1.3;
+// A draft takes a fifth of a full run.
+constexpr int kDrafts = 3, kFullRuns = 2;
+// Of log error over log patches: what photographs have on the average, and what is believed of two drafts.
+constexpr double kUsualSlope = -.42, kSteepest = -.9, kFlattest = -.08;
+// So close to a draft, as a factor of patches, the error between and beside drafts is known well enough.
+constexpr double kNear = 1.35;
 
 struct Run {
-    bool draft;
     double patches, error;
-    // A draft counts as what a full run would come to.
-    double fullError() const { return draft ? kOfDraft * error : error; }
 };
+
+// What a standard run leaves of a draft's error.
+constexpr double kUsualShare = .82;
 
 std::string text(double value) {
     char buffer[32];
@@ -45,18 +44,21 @@ class ErrorSearch {
 
   private:
     double firstGuess() const;
+    double draftError(double patches) const;
+    double predictedError(double patches) const;
     double nextGuess() const;
-    bool draftNext() const;
-    bool reached() const;
-    Result<VectorImage> once(bool draft, double share, Progress& progress, const StageObserver& observe);
-    void file(VectorizeReport& report, size_t patches) const;
+    bool draftNext(double guess) const;
+    bool reached(const Run& run) const { return std::abs(run.error / mGoal.error - 1) <= kErrorTolerance; }
+    Result<VectorImage> once(bool draft, int patches, double share, Progress& progress,
+                             const StageObserver& observe);
+    void file(VectorizeReport& report) const;
 
     const Image& mImage;
     const VectorizeSettings& mSettings;
     const ErrorGoal& mGoal;
     double mMost;
     int mPatches = 2;
-    std::vector<Run> mRuns;
+    std::vector<Run> mDrafts, mRuns;  // drafts by their patches
 };
 
 double ErrorSearch::firstGuess() const {
@@ -67,37 +69,50 @@ double ErrorSearch::firstGuess() const {
     return std::clamp(patches, double(mImage.planeSize()) / 2000, double(mImage.planeSize()) / 50);
 }
 
-double ErrorSearch::nextGuess() const {
-    const Run& last = mRuns.back();
+// A line through the two drafts around or next to `patches`, on logarithmic scales.
+double ErrorSearch::draftError(double patches) const {
+    const auto above = std::ranges::find_if(mDrafts, [&](const Run& d) { return d.patches >= patches; });
+    auto at = size_t(std::max<std::ptrdiff_t>(above - mDrafts.begin(), 1));
+    at = std::min(at, mDrafts.size() - 1);
+    const Run& b = mDrafts[at];
     double slope = kUsualSlope;
-    if (mRuns.size() > 1) {
-        const Run& before = mRuns[mRuns.size() - 2];
-        // Between a draft and a full run the ratio of the two is as uncertain as the slope, unless they are
-        // far apart.
-        const double steps = std::log(last.patches / before.patches);
-        const double rise = std::log(std::max(last.fullError(), 1e-9) / std::max(before.fullError(), 1e-9));
-        if (std::abs(steps) > (last.draft == before.draft ? .05 : 1.0))
-            slope = std::clamp(rise / steps, kSteepest, kFlattest);
+    if (at > 0 && mDrafts[at - 1].patches < b.patches) {
+        const Run& a = mDrafts[at - 1];
+        slope =
+            std::clamp(std::log(b.error / a.error) / std::log(b.patches / a.patches), kSteepest, kFlattest);
     }
-    return last.patches * std::pow(mGoal.error / std::max(last.fullError(), 1e-9), 1 / slope);
+    return b.error * std::pow(patches / b.patches, slope);
 }
 
-bool ErrorSearch::reached() const {
-    return !mRuns.empty() && !mRuns.back().draft &&
-           std::abs(mRuns.back().error / mGoal.error - 1) <= kErrorTolerance;
+// Of a full run; right for the last one.
+double ErrorSearch::predictedError(double patches) const {
+    const double share = mRuns.empty() ? kUsualShare : mRuns.back().error / draftError(mRuns.back().patches);
+    return share * draftError(patches);
 }
 
-// Another draft where the last was too far off to tell the patches of the next run.
-bool ErrorSearch::draftNext() const {
-    if (mRuns.empty()) return true;
-    const double ratio = mRuns.back().fullError() / mGoal.error;
-    return mRuns.size() == 1 && (ratio > kNear || ratio < 1 / kNear);
+double ErrorSearch::nextGuess() const {
+    constexpr int kBisections = 40;
+    double low = std::log(2), high = std::log(mMost);
+    for (int i = 0; i < kBisections; ++i) {
+        const double middle = (low + high) / 2;
+        (predictedError(std::exp(middle)) > mGoal.error ? low : high) = middle;
+    }
+    return std::exp(high);
 }
 
-Result<VectorImage> ErrorSearch::once(bool draft, double share, Progress& progress,
+// Another draft where there is none near the patches of the next run.
+bool ErrorSearch::draftNext(double guess) const {
+    if (mDrafts.empty()) return true;
+    return mRuns.empty() && int(mDrafts.size()) < kDrafts &&
+           std::ranges::none_of(
+               mDrafts,
+               [&](const Run& d) { return std::abs(std::log(d.patches / guess)) <= std::log(kNear); });
+}
+
+Result<VectorImage> ErrorSearch::once(bool draft, int patches, double share, Progress& progress,
                                       const StageObserver& observe) {
     VectorizeSettings settings = mSettings;
-    settings.patches = mPatches;
+    settings.patches = patches;
     if (draft)
         if (auto applied = applyPreset(settings, "draft"); !applied) return tl::unexpected(applied.error());
     progress.beginStage(draft ? "draft" : "vectorize", share);
@@ -107,28 +122,36 @@ Result<VectorImage> ErrorSearch::once(bool draft, double share, Progress& progre
     if (!result) return result;
     const auto error = mGoal.measure(result->mesh, inner);
     if (!error) return tl::unexpected(error.error());
-    mRuns.push_back({draft, double(result->mesh.patchCount()), *error});
+    // A picture without any error is one of the least: logarithms are taken.
+    const Run run{double(result->mesh.patchCount()), std::max(*error, 1e-9)};
+    if (draft)
+        mDrafts.insert(std::ranges::upper_bound(mDrafts, run.patches, {}, &Run::patches), run);
+    else
+        mRuns.push_back(run);
     return result;
 }
 
-void ErrorSearch::file(VectorizeReport& report, size_t patches) const {
+void ErrorSearch::file(VectorizeReport& report) const {
     StageReport search{"search", "secant", 0, {{"wanted error", mGoal.error}}};
-    for (size_t i = 0; i < mRuns.size(); ++i) {
-        const std::string name = (mRuns[i].draft ? "draft " : "run ") + std::to_string(i + 1);
-        search.figures.emplace_back(name + " patches", mRuns[i].patches);
-        search.figures.emplace_back(name + " error", mRuns[i].error);
-    }
+    const auto add = [&](const std::string& kind, const std::vector<Run>& runs) {
+        for (size_t i = 0; i < runs.size(); ++i) {
+            const std::string name = kind + " " + std::to_string(i + 1);
+            search.figures.emplace_back(name + " patches", runs[i].patches);
+            search.figures.emplace_back(name + " error", runs[i].error);
+        }
+    };
+    add("draft", mDrafts);
+    add("run", mRuns);
     report.stages.insert(report.stages.begin(), std::move(search));
-    if (reached()) return;
-    const double error = mRuns.back().error;
-    const std::string got = "the error is " + text(error) + " with " + std::to_string(patches) +
-                            " patches, not " + text(mGoal.error) + ": ";
-    std::string why = "the search ends after " + std::to_string(kRuns) +
-                      " runs; start again from --patches " +
-                      std::to_string(int(std::clamp(nextGuess(), 2.0, mMost)));
-    if (error > mGoal.error && mPatches >= int(mMost))
+    const Run& last = mRuns.back();
+    if (reached(last)) return;
+    const std::string got = "the error is " + text(last.error) + " with " +
+                            std::to_string(int(last.patches)) + " patches, not " + text(mGoal.error) + ": ";
+    std::string why = "the search ends after " + std::to_string(kFullRuns) +
+                      " runs; start again from --patches " + std::to_string(int(std::lround(nextGuess())));
+    if (last.error > mGoal.error && mPatches >= int(mMost))
         why = "there is no more than one patch for " + text(kLeastPixelsPerPatch) + " pixels";
-    else if (error < mGoal.error && mPatches <= 2)
+    else if (last.error < mGoal.error && mPatches <= 2)
         why = "a picture has at least 2 patches";
     else if (!report.shortfall.empty())
         why = report.shortfall;
@@ -136,24 +159,31 @@ void ErrorSearch::file(VectorizeReport& report, size_t patches) const {
 }
 
 Result<VectorImage> ErrorSearch::run(Progress& progress, const StageObserver& observe) {
-    Result<VectorImage> result;
-    double guess = firstGuess();
-    constexpr double kDraftShare = .1;
+    constexpr double kDraftShare = .08, kFirstShare = .4;
     double left = 1;
-    while (int(mRuns.size()) < kRuns) {
-        const int before = mPatches;
-        mPatches = int(std::lround(std::clamp(guess, 2.0, mMost)));
-        const bool draft = draftNext();
-        // At a bound the same run again would tell nothing.
-        if (!mRuns.empty() && !mRuns.back().draft && mPatches == before) break;
-        const double share = draft ? kDraftShare : int(mRuns.size()) + 1 == kRuns ? left : .6 * left;
+    const auto spend = [&](double share) {
         left -= share;
-        result = once(draft, share, progress, observe);
-        if (!result) return result;
-        if (reached()) break;
+        return share;
+    };
+    double guess = firstGuess();
+    while (draftNext(guess)) {
+        const int patches = int(std::lround(std::clamp(guess, 2.0, mMost)));
+        const auto draft = once(true, patches, spend(kDraftShare), progress, {});
+        if (!draft) return draft;
         guess = nextGuess();
     }
-    file(result->report, result->mesh.patchCount());
+    Result<VectorImage> result;
+    while (int(mRuns.size()) < kFullRuns) {
+        const int patches = int(std::lround(guess));
+        // At a bound the same run again would tell nothing.
+        if (!mRuns.empty() && patches == mPatches) break;
+        mPatches = patches;
+        result = once(false, patches, spend(mRuns.empty() ? kFirstShare : left), progress, observe);
+        if (!result) return result;
+        if (reached(mRuns.back())) break;
+        guess = nextGuess();
+    }
+    file(result->report);
     return result;
 }
 

@@ -100,6 +100,7 @@ TEST_F(Bench, TellsEveryFigureOfAFolder) {
         EXPECT_GT(row["peak_rss_mb"], 5);
         EXPECT_GT(row["bytes"], row["patches"]);
         EXPECT_LT(std::abs(row["codec_loss_db"].get<double>()), .5);
+        EXPECT_FALSE(row.contains("peer_cpu_seconds"));
         double stages = 0;
         for (const json& stage : row["stages"]) {
             stages += stage["seconds"].get<double>();
@@ -114,7 +115,12 @@ TEST_F(Bench, TellsEveryFigureOfAFolder) {
                  rowOf(all["runs"], "ramp", 60)["psnr"].get<double>()) /
                     2,
                 1e-9);
-    // The ramp has no edge: the mean is the disc's.
+    // No JPEG is as good as the ramp: the mean is the disc's.
+    const json disc = rowOf(all["runs"], "disc", 60);
+    EXPECT_NEAR(disc["bytes_of_jpeg"], disc["bytes"].get<double>() / disc["jpeg_bytes"].get<double>(), 1e-9);
+    EXPECT_TRUE(rowOf(all["runs"], "ramp", 60)["bytes_of_jpeg"].is_null());
+    EXPECT_EQ(mean["bytes_of_jpeg"], disc["bytes_of_jpeg"]);
+    // Nor has the ramp an edge.
     EXPECT_TRUE(rowOf(all["runs"], "ramp", 60)["recall"].is_null());
     EXPECT_EQ(mean["recall"], rowOf(all["runs"], "disc", 60)["recall"]);
 }
@@ -184,6 +190,31 @@ TEST_F(Bench, MagnifiesPicturesAndShapes) {
     EXPECT_GT(ramp["psnr_bicubic"], rowOf(all["times4"], "disc")["psnr_bicubic"].get<double>() + 10);
 }
 
+TEST_F(Bench, TimesAPeer) {
+    // Works for about a tenth of a second; its name has what a shell would trip over.
+    fs::rename(mFolder / "pictures/ramp.png", mFolder / "pictures/it's a ramp.png");
+    std::ofstream(at("peer.sh")) << "test -f \"$1\" || exit 1\n"
+                                    "echo \"$1\" >> seen; echo chatter\n"
+                                    "i=0; while [ $i -lt 30000 ]; do i=$((i+1)); done\n";
+    ASSERT_EQ(bench("pictures --methods paper --patches 60,120 --peer 'sh peer.sh {in}' --json figures.json"),
+              0)
+        << contentOf("err");
+    EXPECT_EQ(contentOf("seen"), "pictures/disc.png\npictures/it's a ramp.png\n");
+    EXPECT_THAT(contentOf("out"), AllOf(HasSubstr("CPU of peer"), Not(HasSubstr("chatter"))));
+    EXPECT_THAT(contentOf("err"), HasSubstr("disc peer\n"));
+    const json all = figures();
+    ASSERT_EQ(all["runs"].size(), 4u);
+    for (const json& row : all["runs"]) {
+        EXPECT_GT(row["peer_cpu_seconds"], .005);
+        EXPECT_GE(row["peer_seconds"].get<double>(), .9 * row["peer_cpu_seconds"].get<double>());
+        EXPECT_NEAR(row["cpu_of_peer"],
+                    row["cpu_seconds"].get<double>() / row["peer_cpu_seconds"].get<double>(), 1e-9);
+    }
+    EXPECT_GT(rowOf(all["means"], "mean", 60)["cpu_of_peer"], 0);
+    EXPECT_EQ(rowOf(all["runs"], "disc", 60)["peer_cpu_seconds"],
+              rowOf(all["runs"], "disc", 120)["peer_cpu_seconds"]);
+}
+
 TEST_F(Bench, RefusesBeforeTheLongWork) {
     expectError("nowhere.png", 3, "nowhere.png");
     expectError("empty", 3, "no picture in folder 'empty'");
@@ -194,6 +225,9 @@ TEST_F(Bench, RefusesBeforeTheLongWork) {
     expectError("pictures --set speed=9", 2, "speed");
     expectError("pictures --json nowhere/figures.json", 5, "nowhere");
     expectError("", 2, "inputs");
+    expectError("pictures --peer true", 2, "{in}");
+    expectError("pictures --quiet --peer 'test -d {in}'", 2,
+                "disc peer: the peer failed: test -d 'pictures/");
     // What only the run finds out names the run.
     expectError("pictures --quiet --set stage.curves=none", 2, "disc default 1000: ");
 }

@@ -282,20 +282,44 @@ struct Photograph {
     double paperFloor, floor;  // dB, by method
 };
 
-class Photographs : public ::testing::TestWithParam<std::tuple<const char*, Photograph>> {};
+class Photographs : public ::testing::TestWithParam<std::tuple<const char*, Photograph>> {
+  protected:
+    void SetUp() override {
+        const std::string path = std::string(TESSERA_TEST_IMAGES) + "/kodak/" + photo().file;
+        if (!std::filesystem::exists(path))
+            GTEST_SKIP() << "no photograph " << photo().file
+                         << "; set TESSERA_TEST_IMAGES to the folder with kodak/";
+        auto loaded = readImage(path);
+        ASSERT_TRUE(loaded.has_value()) << loaded.error().message;
+        mPhoto = std::move(loaded->image);
+    }
+
+    const char* method() const { return std::get<0>(GetParam()); }
+    const Photograph& photo() const { return std::get<1>(GetParam()); }
+    Image part(int width, int height) const {
+        return paint(width, height, 3, [&](double x, double y, int c) {
+            return mPhoto.at(photo().left + int(x), photo().top + int(y), c);
+        });
+    }
+
+  private:
+    Image mPhoto;
+};
+
+TEST_P(Photographs, AreTheSameOnAnyNumberOfThreads) {
+    const Image picture = part(112, 80);
+    VectorizeSettings settings = wanting(200, method());
+    settings.threads = 1;
+    const VectorImage one = run(picture, settings);
+    for (const int threads : {2, 7}) {
+        settings.threads = threads;
+        expectSame(one.mesh, run(picture, settings).mesh);
+    }
+}
 
 TEST_P(Photographs, AreValidAndClose) {
-    const auto& [method, photo] = GetParam();
-    const std::string path = std::string(TESSERA_TEST_IMAGES) + "/kodak/" + photo.file;
-    if (!std::filesystem::exists(path))
-        GTEST_SKIP() << "no photograph " << photo.file
-                     << "; set TESSERA_TEST_IMAGES to the folder with kodak/";
-    const auto loaded = readImage(path);
-    ASSERT_TRUE(loaded.has_value()) << loaded.error().message;
-    const Image part = paint(photo.width, photo.height, 3, [&](double x, double y, int c) {
-        return loaded->image.at(photo.left + int(x), photo.top + int(y), c);
-    });
-    const VectorImage result = run(part, wanting(2000, method));
+    const Image picture = part(photo().width, photo().height);
+    const VectorImage result = run(picture, wanting(2000, method()));
     const MeshValidation validation = validate(result.mesh);
     EXPECT_EQ(validation.violationCount, 0U);
     EXPECT_THAT(validation.violations, IsEmpty());
@@ -305,7 +329,8 @@ TEST_P(Photographs, AreValidAndClose) {
         EXPECT_THAT(result.report.shortfall,
                     HasSubstr(std::to_string(result.mesh.patchCount()) + " patches"));
     }
-    EXPECT_GT(psnrOf(result.mesh, part), std::string(method) == "paper" ? photo.paperFloor : photo.floor);
+    EXPECT_GT(psnrOf(result.mesh, picture),
+              std::string(method()) == "paper" ? photo().paperFloor : photo().floor);
 }
 
 INSTANTIATE_TEST_SUITE_P(
