@@ -20,9 +20,10 @@ enum class Unit : uint32_t {
     Reaches,
     Features,
     EdgeLevels,
-    Pieces
+    Pieces,
+    Rects
 };
-constexpr uint32_t kUnitCount = 9;
+constexpr uint32_t kUnitCount = 10;
 // Storage buffers that the compute passes write, and the counters of the resolve pass.
 enum class Binding : uint32_t { EdgeLevels = 0, Pieces = 1, Draws = 2, Counters = 0 };
 constexpr uint32_t kBindingCount = 3;
@@ -111,9 +112,8 @@ struct GpuView {
     uint32_t pieceCapacity;
     uint32_t drawVertices;
     uint32_t drawCount;
-    float sharpen;
     uint32_t showHidden;
-    std::array<uint32_t, 3> padding;
+    std::array<uint32_t, 4> padding;
 };
 static_assert(sizeof(GpuView) == 96);
 

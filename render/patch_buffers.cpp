@@ -152,10 +152,9 @@ void PatchBuffers::setSpline(const PatchMesh& mesh, PatchId p, GpuPatch& patch) 
 }
 
 void PatchBuffers::setBlur(const PatchMesh& mesh, double sharpen) {
-    const EdgeBlur blur(mesh, sharpen);
-    const auto features = blur.features();
-    const auto chains = blur.chains();
-    mBlurred = !features.empty();
+    const std::shared_ptr<const EdgeBlur> blur = edgeBlurOf(mesh, sharpen);
+    const auto features = blur->features();
+    const auto chains = blur->chains();
     mFeatures.resize(features.size());
     for (size_t i = 0; i < features.size(); ++i)
         mFeatures.set(i, gpuFeature(mesh, features[i], chains[features[i].chain]));
@@ -164,7 +163,7 @@ void PatchBuffers::setBlur(const PatchMesh& mesh, double sharpen) {
     mReachLists.resize(mPatches.size());
     TermHeap heap;
     for (uint32_t p = 0; p < mPatches.size(); ++p) {
-        const auto reaches = blur.reaches(PatchId(p));
+        const auto reaches = blur->reaches(PatchId(p));
         const TermHeap::Run run = heap.fit({}, uint32_t(reaches.size()));
         if (heap.size() > mReaches.size()) mReaches.resize(std::max(heap.size(), mReaches.size() * 5 / 4));
         for (size_t k = 0; k < reaches.size(); ++k)

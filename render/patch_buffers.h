@@ -50,7 +50,6 @@ class PatchBuffers {
 
     size_t patchCount() const { return mPatches.size(); }
     size_t edgeCount() const { return mEdges.size(); }
-    bool blurred() const { return mBlurred; }
 
   private:
     bool setEdge(const PatchMesh& mesh, EdgeId e);
@@ -66,7 +65,6 @@ class PatchBuffers {
     TermHeap mHeap;
     std::vector<TermHeap::Run> mRuns;           // by patch id
     std::vector<std::array<float, 2>> mSigmas;  // by edge id; -1 where the edge is no feature
-    bool mBlurred = false;
 };
 
 // The view as the shaders see it, `samplesPerSide` of them along each side of a pixel; (targetX, targetY) is

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/base/check.h"
+#include "core/mesh/edge_blur.h"
 #include "render/compute_subdivision.h"
 #include "render/gl_objects.h"
 #include "render/gpu_layout.h"
@@ -79,7 +80,6 @@ void Renderer::State::prepare(const View& view, const DrawOptions& options, glm:
     block.patchCount = uint32_t(buffers.patchCount());
     block.edgeCount = uint32_t(buffers.edgeCount());
     lod.plan(block);
-    block.sharpen = buffers.blurred() ? float(options.sharpen) : 0;
     block.showHidden = options.showHidden;
     viewBlock.reserve(sizeof(block));
     viewBlock.write(0, &block, sizeof(block));
@@ -107,7 +107,7 @@ Result<void> Renderer::State::drawVisibility(const DrawOptions& options) {
 
 namespace {
 
-// Draws a frame; `resolve` draws the colours from the visibility buffer.
+// Draws a frame; resolve(tiles, size) draws the colours from the visibility buffer.
 template <class State, class Resolve>
 Result<void> drawFrame(State& state, const View& view, const DrawOptions& options, Resolve&& resolve) {
     if (view.width <= 0 || view.height <= 0) return {};
@@ -118,20 +118,23 @@ Result<void> drawFrame(State& state, const View& view, const DrawOptions& option
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(scope.drawFramebuffer()));
     glViewport(viewport[0], viewport[1], view.width, view.height);
     glBindTextureUnit(GLuint(Unit::Visibility), state.visibility.texture().name());
-    resolve();
+    resolve(blurTiles(*edgeBlurOf(state.mesh, state.sharpen), view), glm::ivec2(view.width, view.height));
     return {};
 }
 
 }  // namespace
 
 Result<void> Renderer::draw(const View& view, const DrawOptions& options) {
-    return drawFrame(*mState, view, options, [&] { mState->resolve.run(options.samples); });
+    return drawFrame(*mState, view, options, [&](const BlurTiles& tiles, glm::ivec2 size) {
+        mState->resolve.run(tiles, size, options.samples);
+    });
 }
 
 Result<EvaluationCounts> Renderer::drawCounted(const View& view, const DrawOptions& options) {
     Result<EvaluationCounts> counts;
-    const auto drawn =
-        drawFrame(*mState, view, options, [&] { counts = mState->resolve.runCounted(options.samples); });
+    const auto drawn = drawFrame(*mState, view, options, [&](const BlurTiles& tiles, glm::ivec2 size) {
+        counts = mState->resolve.runCounted(tiles, size, options.samples);
+    });
     if (!drawn) return tl::unexpected(drawn.error());
     return counts;
 }

@@ -5,7 +5,9 @@
 #include <map>
 
 #include "core/base/result.h"
+#include "render/blur_tiles.h"
 #include "render/gl_objects.h"
+#include "render/mirror_buffer.h"
 
 namespace tessera::render {
 
@@ -19,16 +21,22 @@ class ResolvePass {
   public:
     static Result<ResolvePass> create();
 
-    // Draws over the bound framebuffer's viewport; `samples` is 1 or 4. The textures and buffers are bound.
-    void run(int samples) const;
-    // The same, counted. Compiles a program at the first call.
-    Result<EvaluationCounts> runCounted(int samples);
+    // Draws the view's `tiles` into the bound framebuffer's viewport, which is as large; `samples` is 1 or 4.
+    // The textures and buffers are bound.
+    void run(const BlurTiles& tiles, glm::ivec2 size, int samples);
+    // The same, counted. Compiles programs at the first call.
+    Result<EvaluationCounts> runCounted(const BlurTiles& tiles, glm::ivec2 size, int samples);
 
   private:
-    static Result<Program> makeVariant(int samples, bool counted);
+    struct Variants {
+        Program plain, blurred;
+    };
+    static Result<Variants> makeVariants(int samples, bool counted);
+    void draw(const Variants& programs, const BlurTiles& tiles, glm::ivec2 size);
 
-    std::map<int, Program> mPrograms;  // by samples
-    std::map<int, Program> mCountedPrograms;
+    std::map<int, Variants> mPrograms;  // by samples
+    std::map<int, Variants> mCountedPrograms;
+    MirrorBuffer<glm::ivec4> mRects{GL_RGBA32I};
 };
 
 }  // namespace tessera::render

@@ -1,7 +1,8 @@
 #version 450 core
 // Colours from the visibility buffer: one evaluation of a spline for each patch that a pixel's samples are of,
 // at their middle; more only where features are blurred. Working space, not clamped, premultiplied.
-// SAMPLES is 1 or 4; COUNT_EVALUATIONS adds up how many splines were evaluated.
+// SAMPLES is 1 or 4; BLUR is defined where features may be blurred; COUNT_EVALUATIONS adds up how many splines
+// were evaluated.
 #include "include/gpu_layout.glsl"
 #include "include/geometry.glsl"
 
@@ -27,7 +28,9 @@ vec2 imagePoint(vec2 grid) {
 }
 
 #include "include/tps.glsl"
+#ifdef BLUR
 #include "include/blur.glsl"
+#endif
 
 const int kRefinements = 3;
 const float kRefined = 0.01;  // samples
@@ -117,12 +120,12 @@ vec4 sumOfSamples(uint p, vec2 grid[SAMPLES], uvec2 visible[SAMPLES], vec2 sampl
 #ifdef COUNT_EVALUATIONS
     const uint before = evaluations;
 #endif
-    if (view.sharpen > 0.0) {
-        const vec2 pixel = imagePoint(vec2(1.0));  // of the grid
-        const vec2 middle = SAMPLES == 1 ? samples[0] : 0.5 * (samples[0] + samples[SAMPLES - 1]);
-        const float slack = SAMPLES == 1 ? 0.01 : 0.01 + 0.5 * length(pixel);
-        sum += blurOf(p, samples, mask, middle, slack);
-    }
+#ifdef BLUR
+    const vec2 pixel = imagePoint(vec2(1.0));  // of the grid
+    const vec2 middle = SAMPLES == 1 ? samples[0] : 0.5 * (samples[0] + samples[SAMPLES - 1]);
+    const float slack = SAMPLES == 1 ? 0.01 : 0.01 + 0.5 * length(pixel);
+    sum += blurOf(p, samples, mask, middle, slack);
+#endif
 #ifdef COUNT_EVALUATIONS
     atomicAdd(counters[0], before);
     atomicAdd(counters[1], evaluations - before);

@@ -2,6 +2,7 @@
 // pointer a page, and an edit costs the pages that it touches.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -75,6 +76,18 @@ class PagedArray {
     // Whether element i is, in memory, the very same in both arrays (so that nothing has changed it).
     bool sharesPage(const PagedArray& other, size_t i) const {
         return i < mSize && i < other.mSize && mPages[i >> kPageBits] == other.mPages[i >> kPageBits];
+    }
+
+    bool operator==(const PagedArray& other) const {
+        if (mSize != other.mSize) return false;
+        for (size_t page = 0; page < mPages.size(); ++page) {
+            if (mPages[page] == other.mPages[page]) continue;
+            const T* from = mPages[page]->at;
+            if (!std::equal(from, from + std::min(kPageSize, mSize - page * kPageSize),
+                            other.mPages[page]->at))
+                return false;
+        }
+        return true;
     }
 
     // The memory of the pages that `other` does not share, in bytes, and of the list of pages;

@@ -3,14 +3,10 @@
 
 namespace tessera {
 
-namespace {
-
-bool separates(const PatchMesh& mesh, HalfedgeId h) {
+bool separatesColours(const PatchMesh& mesh, HalfedgeId h) {
     const EdgeCurve& curve = mesh.curve(HalfedgeMesh::edge(h));
     return curve.feature || curve.colourBreak;
 }
-
-}  // namespace
 
 std::vector<HalfedgeId> fanOf(const PatchMesh& mesh, HalfedgeId side) {
     const HalfedgeMesh& c = mesh.connectivity();
@@ -19,13 +15,13 @@ std::vector<HalfedgeId> fanOf(const PatchMesh& mesh, HalfedgeId side) {
     for (HalfedgeId h = side;;) {
         const HalfedgeId entering = c.prev(h);
         h = HalfedgeMesh::twin(entering);
-        if (separates(mesh, entering) || !c.face(h).valid()) break;
+        if (separatesColours(mesh, entering) || !c.face(h).valid()) break;
         if (h == side) return fan;
         fan.push_back(h);
     }
     for (HalfedgeId h = side;;) {
         const HalfedgeId beyond = HalfedgeMesh::twin(h);
-        if (separates(mesh, h) || !c.face(beyond).valid()) break;
+        if (separatesColours(mesh, h) || !c.face(beyond).valid()) break;
         h = c.next(beyond);
         fan.push_back(h);
     }

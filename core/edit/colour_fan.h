@@ -9,6 +9,9 @@
 
 namespace tessera {
 
+// Whether colours may jump across an edge: a feature or a colour break.
+bool separatesColours(const PatchMesh& mesh, HalfedgeId h);
+
 // The patches around the origin of `side` that are joined with the patch of `side` there, across edges that
 // are neither features nor colour breaks; each by its side that leaves the vertex, that of `side` first.
 std::vector<HalfedgeId> fanOf(const PatchMesh& mesh, HalfedgeId side);

@@ -22,6 +22,7 @@ constexpr double kLeastAlpha = 1.0 / 512;
 struct DomainPoints {
     std::vector<float> x, y;
 
+    DomainPoints() = default;
     explicit DomainPoints(std::span<const Barycentric> points);
     size_t size() const { return x.size(); }
 };

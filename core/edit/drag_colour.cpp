@@ -48,7 +48,7 @@ std::map<PatchId, Corners> ringOf(const PatchMesh& mesh, PatchId p, const Baryce
 // The spline with a change, of R, G and B premultiplied, laid on by a share that is even at 0 and at 1: so
 // that no crease is seen where the ring ends.
 PatchSpline changed(const PatchMesh& mesh, PatchId p, const Corners& shares, glm::dvec3 change) {
-    const DomainPoints& points = SplineRefit::points();
+    const DomainPoints& points = RefitPoints::all().domain;
     const size_t n = points.size();
     std::vector<float> now(n * kMaxChannels);
     float* planes[kMaxChannels];
@@ -59,11 +59,11 @@ PatchSpline changed(const PatchMesh& mesh, PatchId p, const Corners& shares, glm
     fromWorking(mesh.colourBasis(), single, 1);
     std::vector<double> values(now.begin(), now.end());
     for (size_t i = 0; i < n; ++i) {
-        const Barycentric& b = SplineRefit::barycentrics()[i];
+        const Barycentric& b = RefitPoints::all().barycentrics[i];
         const double share = smoothStep(0, 1, b.x * shares[0] + b.y * shares[1] + b.z * shares[2]);
         for (size_t c = 0; c < 3; ++c) values[c * n + i] += share * double(inBasis[c]);
     }
-    return SplineRefit(mesh.spline(p)).fit(values, mesh.channels());
+    return SplineRefit(mesh.spline(p)).fit(values, mesh.channels()).value();
 }
 
 }  // namespace

@@ -59,10 +59,13 @@ PaintedColour::PaintedColour(glm::dvec3 colour, glm::dvec2 at)
 // The colours at the points that repaintings look at, and the factors of refits.
 struct Repainter::Patch {
     PatchId id;
-    bool even = true;             // weight 1 everywhere
-    std::vector<double> weights;  // at the points of a refit, else
-    PaintedColour mean;           // of the probes
-    PaintedColour beside[3];      // the mean with a little more of R, G or B
+    bool even = true;                        // weight 1 everywhere
+    bool needsAll = false;                   // few points did not do
+    std::vector<double> weights;             // at all sites, else
+    std::unique_ptr<const RefitPoints> few;  // where that is not all
+    const RefitPoints* sampledAt = nullptr;  // where `colours` are
+    PaintedColour mean;                      // of the probes
+    PaintedColour beside[3];                 // the mean with a little more of R, G or B
     std::vector<PaintedColour> probes;
     std::vector<double> probeAlphas;
     std::vector<PaintedColour> colours;  // at the points of a refit
@@ -95,20 +98,27 @@ struct Repainter::Patch {
         }
     }
 
-    void sample(const PatchMesh& mesh) {
-        if (!colours.empty()) return;
+    void sample(const PatchMesh& mesh, const RefitPoints& at) {
+        if (!colours.empty() && sampledAt == &at) return;
+        colours.clear();
+        alphas.clear();
+        refit.reset();
+        sampledAt = &at;
         const BezierTriangle shape = toPixels(mesh.controlPoints(id));
-        const auto samples = sampleColours(mesh, id, SplineRefit::points());
+        const auto samples = sampleColours(mesh, id, at.domain);
+        colours.reserve(samples.size());
+        alphas.reserve(samples.size());
         for (size_t i = 0; i < samples.size(); ++i) {
-            colours.emplace_back(samples[i].srgb, evaluate(shape, SplineRefit::barycentrics()[i]));
+            colours.emplace_back(samples[i].srgb, evaluate(shape, at.barycentrics[i]));
             alphas.push_back(samples[i].alpha);
         }
     }
 
     void forget() {
+        refit.reset();
+        few.reset();
         colours = {};
         alphas = {};
-        refit.reset();
     }
 
     // The tangent of a repainting at the mean colour.
@@ -145,7 +155,7 @@ Repainter::Repainter(PatchMesh start, PatchSet patches, PaintWeight weight)
             patch.id = mPatches[i];
             if (!weight) continue;
             const BezierTriangle shape = toPixels(mStart.controlPoints(patch.id));
-            for (const Barycentric& b : SplineRefit::barycentrics())
+            for (const Barycentric& b : RefitPoints::all().barycentrics)
                 patch.weights.push_back(weight(evaluate(shape, b)));
             patch.even =
                 std::all_of(patch.weights.begin(), patch.weights.end(), [](double w) { return w >= 1; });
@@ -154,23 +164,36 @@ Repainter::Repainter(PatchMesh start, PatchSet patches, PaintWeight weight)
 }
 
 Repainter::Spline Repainter::refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint) {
+    // What few points cannot settle is looked at closely from then on.
+    if (!patch.needsAll) {
+        if (!patch.few)
+            patch.few = std::make_unique<RefitPoints>(RefitPoints::enoughFor(mesh.spline(patch.id)));
+        if (auto spline = refittedAt(mesh, patch, repaint, *patch.few)) return *spline;
+        patch.needsAll = true;
+    }
+    return *refittedAt(mesh, patch, repaint, RefitPoints::all());
+}
+
+std::optional<Repainter::Spline> Repainter::refittedAt(const PatchMesh& mesh, Patch& patch,
+                                                       const Repaint& repaint, const RefitPoints& at) {
     patch.probe(mesh);
-    patch.sample(mesh);
+    patch.sample(mesh, at);
     const size_t n = patch.colours.size();
     std::vector<glm::dvec3> colours(n), targets(n);
     double most = 0;
     for (size_t i = 0; i < n; ++i) {
         colours[i] = patch.colours[i].whole;
         const glm::dvec3 full = painted(repaint, patch.colours[i]);
-        targets[i] = patch.even ? full : glm::mix(colours[i], full, patch.weights[i]);
+        targets[i] = patch.even ? full : glm::mix(colours[i], full, patch.weights[at.sites[i]]);
         most = std::max(most, largest(targets[i] - colours[i]));
     }
-    if (most < kNoChange) return std::nullopt;
+    if (most < kNoChange) return Spline{};
     if (mesh.channels() == 3) {
         const AffineColour guess = patch.even && !repaint.affine ? patch.tangent(repaint) : AffineColour{};
-        if (const auto placed = PlacedChange::nearest(guess, colours, targets, kPlacedMean, kPlacedMost))
-            return withCornersRaised(mixed(mesh.spline(patch.id), 3, mesh.colourBasis(), placed->change),
-                                     mesh.colourBasis(), placed->corners);
+        if (const auto placed = PlacedChange::nearest(guess, at, colours, targets, kPlacedMean, kPlacedMost))
+            return Spline(
+                withCornersRaised(mixed(mesh.spline(patch.id), 3, mesh.colourBasis(), placed->change),
+                                  mesh.colourBasis(), placed->corners));
     }
     std::vector<float> planes(n * kMaxChannels);
     for (size_t i = 0; i < n; ++i) {
@@ -181,8 +204,10 @@ Repainter::Spline Repainter::refitted(const PatchMesh& mesh, Patch& patch, const
     for (size_t c = 0; c < kMaxChannels; ++c) pointers[c] = planes.data() + c * n;
     fromWorking(mesh.colourBasis(), pointers, n);
     const std::vector<double> values(planes.begin(), planes.end());
-    if (!patch.refit) patch.refit.emplace(mesh.spline(patch.id));
-    return patch.refit->fit(values, mesh.channels());
+    if (!patch.refit) patch.refit.emplace(mesh.spline(patch.id), at);
+    Spline fitted = patch.refit->fit(values, mesh.channels());
+    if (!fitted) return std::nullopt;
+    return fitted;
 }
 
 Repainter::Spline Repainter::repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint) {

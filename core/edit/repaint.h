@@ -56,6 +56,9 @@ class Repainter {
     using Spline = std::optional<PatchSpline>;  // none where nothing changes
     static Spline repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
     static Spline refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
+    // None where these points do not settle it.
+    static std::optional<Spline> refittedAt(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
+                                            const RefitPoints& at);
     static Spline sketched(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
 
     PatchMesh mStart;

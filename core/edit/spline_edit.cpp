@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 #include <numeric>
 
+#include "core/base/check.h"
 #include "core/mesh/newton_basis.h"
 
 namespace tessera {
@@ -20,7 +21,6 @@ using Eigen::VectorXd;
 
 constexpr int kPolynomials = 3;
 constexpr int kCorners = 3;
-constexpr Eigen::Index kPoints = kCentreSites;
 
 // Shares of channels in channels, row by channel that is made; the last column is a constant.
 using Mix = std::array<std::array<double, kMaxChannels + 1>, kMaxChannels>;
@@ -94,49 +94,33 @@ PatchSpline mixed(const PatchSpline& spline, int channels, ColourBasis basis, co
 
 namespace {
 
-// Points on a side count more: there neighbours must agree.
-const VectorXd& pointWeights() {
-    static const VectorXd weights = [] {
-        constexpr double kOnSide = 4;
-        VectorXd w(kPoints);
-        for (Eigen::Index i = 0; i < kPoints; ++i) {
-            const Barycentric& b = SplineRefit::barycentrics()[size_t(i)];
-            w(i) = std::min({b.x, b.y, b.z}) < 1e-9 ? kOnSide : 1;
-        }
-        return w;
-    }();
-    return weights;
-}
-
 // A basis of functions at the points, with its normal equations.
 struct Factorized {
     MatrixXd functions;  // points x functions
+    MatrixXd weighted;
     Eigen::LLT<MatrixXd> normal;
 
-    explicit Factorized(MatrixXd values) : functions(std::move(values)) {
-        const MatrixXd weighted = pointWeights().asDiagonal() * functions;
+    Factorized(MatrixXd values, const RefitPoints& at) : functions(std::move(values)) {
+        weighted = Eigen::Map<const VectorXd>(at.weights.data(), functions.rows()).asDiagonal() * functions;
         MatrixXd gram = functions.transpose() * weighted;
         gram.diagonal().array() += 1e-9;  // sites may be as many as points
         normal.compute(gram);
     }
-    MatrixXd solve(const MatrixXd& targets) const {
-        return normal.solve(functions.transpose() * (pointWeights().asDiagonal() * targets));
-    }
+    MatrixXd solve(const MatrixXd& targets) const { return normal.solve(weighted.transpose() * targets); }
 };
 
-MatrixXd newtonFunctions(const NewtonBasis& basis) {
-    const DomainPoints& points = SplineRefit::points();
-    Eigen::MatrixXf values(kPoints, basis.size());
-    basis.evaluate(points.x.data(), points.y.data(), points.size(), values.data(), points.size());
+MatrixXd newtonFunctions(const NewtonBasis& basis, const RefitPoints& at) {
+    Eigen::MatrixXf values(Eigen::Index(at.size()), basis.size());
+    basis.evaluate(at.domain.x.data(), at.domain.y.data(), at.size(), values.data(), at.size());
     return values.cast<double>();
 }
 
-// The 16 default centres: functions are 1 at one centre and 0 at the others.
+// The 16 default centres at all points: functions are 1 at one centre and 0 at the others.
 const Factorized& defaultFactorized() {
     static const Factorized factorized = [] {
         constexpr Eigen::Index n = kDefaultCentreCount;
-        MatrixXd raw(kPoints, n + kPolynomials);
-        for (Eigen::Index i = 0; i < kPoints; ++i) {
+        MatrixXd raw(kCentreSites, n + kPolynomials);
+        for (Eigen::Index i = 0; i < kCentreSites; ++i) {
             const glm::dvec2 at = centreSites()[size_t(i)];
             raw.row(i).head<kPolynomials>() << 1, at.x, at.y;
             for (Eigen::Index k = 0; k < n; ++k) {
@@ -146,7 +130,7 @@ const Factorized& defaultFactorized() {
         }
         const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> nodal(
             defaultNodalBasis().toCoefficients.data(), n + kPolynomials, n);
-        return Factorized(raw * nodal);
+        return Factorized(raw * nodal, RefitPoints::all());
     }();
     return factorized;
 }
@@ -198,12 +182,11 @@ void addSites(const MatrixXd& left, std::vector<uint8_t>& sites) {
 
 }  // namespace
 
-std::optional<PlacedChange> PlacedChange::nearest(const AffineColour& guess,
+std::optional<PlacedChange> PlacedChange::nearest(const AffineColour& guess, const RefitPoints& points,
                                                   std::span<const glm::dvec3> colours,
                                                   std::span<const glm::dvec3> targets, double mean,
                                                   double most) {
-    const std::vector<Barycentric>& at = SplineRefit::barycentrics();
-    const VectorXd& weights = pointWeights();
+    const std::vector<Barycentric>& at = points.barycentrics;
     glm::dvec3 middle(0);
     for (const glm::dvec3& c : colours) middle += c / double(colours.size());
     // What is left of the guess, as a linear function of a colour's difference from the middle and of place.
@@ -218,7 +201,7 @@ std::optional<PlacedChange> PlacedChange::nearest(const AffineColour& guess,
     Eigen::Matrix<double, 6, 3> right = Eigen::Matrix<double, 6, 3>::Zero();
     for (size_t i = 0; i < colours.size(); ++i) {
         const Row row = rowOf(i);
-        const Row weighted = weights(Eigen::Index(i)) * row;
+        const Row weighted = points.weights[i] * row;
         const glm::dvec3 left = targets[i] - guess(colours[i]);
         normal.noalias() += weighted * row.transpose();
         for (int c = 0; c < 3; ++c) right.col(c) += left[c] * weighted;
@@ -258,58 +241,85 @@ std::vector<uint8_t> usualSites() {
     return sites;
 }
 
+RefitPoints::RefitPoints(std::vector<uint8_t> places) : sites(std::move(places)) {
+    constexpr double kOnSide = 4;
+    for (const uint8_t s : sites) {
+        const Barycentric b = barycentricOf(centreSites()[s]);
+        barycentrics.push_back(b);
+        weights.push_back(std::min({b.x, b.y, b.z}) < 1e-9 ? kOnSide : 1);
+    }
+    domain = DomainPoints(barycentrics);
+}
+
+const RefitPoints& RefitPoints::all() {
+    static const RefitPoints points([] {
+        std::vector<uint8_t> sites(kCentreSites);
+        std::iota(sites.begin(), sites.end(), uint8_t{0});
+        return sites;
+    }());
+    return points;
+}
+
+RefitPoints RefitPoints::enoughFor(const PatchSpline& spline) {
+    constexpr size_t kFew = 24;
+    // Splines on the default centres share a factorization at all points.
+    const bool shared = spline.sites.empty() && spline.maxTerms(kMaxChannels) > 0;
+    if (shared || spline.sites.size() > kFew) return all();
+    static const std::vector<uint8_t> everyOther = [] {
+        std::vector<uint8_t> sites;
+        const auto odd = [](double share) { return std::lround(share * kSiteSubdivisions) % 2 != 0; };
+        for (const uint8_t s : all().sites)
+            if (const Barycentric& b = all().barycentrics[s]; !odd(b.y) && !odd(b.z)) sites.push_back(s);
+        return sites;
+    }();
+    std::vector<uint8_t> sites = everyOther;
+    for (const uint8_t s : spline.sites)
+        if (!std::binary_search(everyOther.begin(), everyOther.end(), s)) sites.push_back(s);
+    return RefitPoints(std::move(sites));
+}
+
 struct SplineRefit::System {
+    const RefitPoints& at;
     std::vector<uint8_t> sites;  // empty: the default centres
     std::unique_ptr<const NewtonBasis> basis;
     std::unique_ptr<const Factorized> own;
 
-    explicit System(std::vector<uint8_t> places) : sites(std::move(places)) {
+    System(std::vector<uint8_t> places, const RefitPoints& points) : at(points), sites(std::move(places)) {
         if (sites.empty()) return;
         basis = std::make_unique<NewtonBasis>(sites);
-        own = std::make_unique<Factorized>(newtonFunctions(*basis));
+        own = std::make_unique<Factorized>(newtonFunctions(*basis, at), at);
     }
     const Factorized& factorized() const { return own ? *own : defaultFactorized(); }
 };
 
-SplineRefit::SplineRefit(const PatchSpline& like) {
+SplineRefit::SplineRefit(const PatchSpline& like, const RefitPoints& at) {
     std::vector<uint8_t> sites = like.sites;
     const bool usual = sites.empty() && like.centres.empty() &&
                        std::any_of(like.terms.begin(), like.terms.end(), [](uint8_t n) { return n > 0; });
+    TESSERA_CHECK(!usual || at.size() == size_t(kCentreSites));
     if (sites.empty() && !usual) sites = {0, 1, 2};
-    mSystem = std::make_unique<System>(std::move(sites));
+    mSystem = std::make_unique<System>(std::move(sites), at);
 }
 SplineRefit::~SplineRefit() = default;
 SplineRefit::SplineRefit(SplineRefit&&) noexcept = default;
 SplineRefit& SplineRefit::operator=(SplineRefit&&) noexcept = default;
 
-const std::vector<Barycentric>& SplineRefit::barycentrics() {
-    static const std::vector<Barycentric> all = [] {
-        std::vector<Barycentric> b;
-        for (const glm::dvec2 s : centreSites()) b.push_back(barycentricOf(s));
-        return b;
-    }();
-    return all;
-}
-
-const DomainPoints& SplineRefit::points() {
-    static const DomainPoints all(barycentrics());
-    return all;
-}
-
-PatchSpline SplineRefit::fit(std::span<const double> values, int channels) const {
-    const Eigen::Map<const MatrixXd> targets(values.data(), kPoints, channels);
+std::optional<PatchSpline> SplineRefit::fit(std::span<const double> values, int channels) const {
+    const RefitPoints& at = mSystem->at;
+    const Eigen::Map<const MatrixXd> targets(values.data(), Eigen::Index(at.size()), channels);
     const auto deviation = [&](const MatrixXd& left) { return left.cwiseAbs().mean(); };
     const Factorized& first = mSystem->factorized();
     MatrixXd factors = first.solve(targets);
     MatrixXd left = targets - first.functions * factors;
     if (deviation(left) <= kRefitTolerance)
         return mSystem->basis ? newtonSpline(*mSystem->basis, factors) : defaultSpline(factors);
+    if (at.size() < size_t(kCentreSites)) return std::nullopt;
 
     std::vector<uint8_t> sites = mSystem->basis ? mSystem->sites : usualSites();
     for (;;) {
         addSites(left, sites);
         const NewtonBasis basis(sites);
-        const Factorized more(newtonFunctions(basis));
+        const Factorized more(newtonFunctions(basis, at), at);
         factors = more.solve(targets);
         left = targets - more.functions * factors;
         if (deviation(left) <= kRefitTolerance || sites.size() == kCentreSites)

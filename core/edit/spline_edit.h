@@ -32,22 +32,37 @@ AffineColour tinted(glm::dvec3 colour, double strength);
 // of centres.
 PatchSpline mixed(const PatchSpline& spline, int channels, ColourBasis basis, const AffineColour& change);
 
+// Where a fit looks at colours: sites, the corners first.
+struct RefitPoints {
+    std::vector<uint8_t> sites;
+    std::vector<Barycentric> barycentrics;
+    DomainPoints domain;
+    std::vector<double> weights;  // in a fit: points on a side count more, since neighbours must agree there
+
+    explicit RefitPoints(std::vector<uint8_t> places);
+    size_t size() const { return sites.size(); }
+
+    // The sites in their order.
+    static const RefitPoints& all();
+    // As many as the terms of a spline need: where it has few, every other site in each direction and its
+    // own, without which what they do between the others would not be seen.
+    static RefitPoints enoughFor(const PatchSpline& spline);
+};
+
 // The least-squares fit of splines with the centres of a given one to values at points of the domain.
 // Factorized once, for many fits. A spline without terms or with centres of its own gets sites.
 class SplineRefit {
   public:
-    explicit SplineRefit(const PatchSpline& like);
+    // Keeps a reference to `at`.
+    explicit SplineRefit(const PatchSpline& like, const RefitPoints& at = RefitPoints::all());
     ~SplineRefit();
     SplineRefit(SplineRefit&&) noexcept;
     SplineRefit& operator=(SplineRefit&&) noexcept;
 
-    // Where the values are: the sites, in the order of centreSites().
-    static const std::vector<Barycentric>& barycentrics();
-    static const DomainPoints& points();
-
-    // values[c * points().size() + i] of channel c at point i, in the basis of the spline. Where the mean
-    // deviation at the points is more than kRefitTolerance the spline gets further sites. Thread-safe.
-    PatchSpline fit(std::span<const double> values, int channels) const;
+    // values[c * n + i] of channel c at point i of n, in the basis of the spline. Where the mean deviation at
+    // the points is more than kRefitTolerance the spline gets further sites; there is none then where the
+    // points are not all of them. Thread-safe.
+    std::optional<PatchSpline> fit(std::span<const double> values, int channels) const;
 
   private:
     struct System;
@@ -59,9 +74,10 @@ struct PlacedChange {
     AffineColour change;
     CornerValues corners{};  // added after it
 
-    // The one nearest to a repainting that makes `targets` of a patch's `colours` at SplineRefit::points(),
-    // near a guess; none where it is farther off than `mean` on the mean of the channels, or `most` anywhere.
-    static std::optional<PlacedChange> nearest(const AffineColour& guess, std::span<const glm::dvec3> colours,
+    // The one nearest to a repainting that makes `targets` of a patch's `colours` at some points, near a
+    // guess; none where it is farther off than `mean` on the mean of the channels, or `most` anywhere.
+    static std::optional<PlacedChange> nearest(const AffineColour& guess, const RefitPoints& at,
+                                               std::span<const glm::dvec3> colours,
                                                std::span<const glm::dvec3> targets, double mean, double most);
 };
 

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "core/edit/colour_fan.h"
 #include "core/edit/colour_samples.h"
+#include "core/edit/colour_transfer.h"
 #include "core/edit/deformation.h"
 #include "core/edit/spline_edit.h"
 #include "core/mesh/jacobian.h"
@@ -43,14 +42,14 @@ size_t sideIndex(const HalfedgeMesh& c, HalfedgeId h) {
 // The colours of the whole on a part.
 PatchSpline partSpline(const PatchSpline& whole, int channels, const std::array<Barycentric, 3>& corners) {
     std::vector<Barycentric> points;
-    for (const Barycentric& b : SplineRefit::barycentrics())
+    for (const Barycentric& b : RefitPoints::all().barycentrics)
         points.push_back(b.x * corners[0] + b.y * corners[1] + b.z * corners[2]);
     const DomainPoints at(points);
     std::vector<float> values(at.size() * size_t(channels));
     float* planes[kMaxChannels];
     for (size_t c = 0; c < size_t(channels); ++c) planes[c] = values.data() + c * at.size();
     evaluateSplines(whole, channels, at.x.data(), at.y.data(), at.size(), planes);
-    return SplineRefit(whole).fit(std::vector<double>(values.begin(), values.end()), channels);
+    return SplineRefit(whole).fit(std::vector<double>(values.begin(), values.end()), channels).value();
 }
 
 // A patch is about to be cut into parts around a new vertex: sets the parts' edges there, interior points,
@@ -280,7 +279,7 @@ class Merge {
         moveCurves();
         if (!moveInteriors()) return false;
         dropJoins();
-        joinColours();
+        transferColours();
         mesh = std::move(mResult);
         return true;
     }
@@ -295,7 +294,6 @@ class Merge {
 
     void collapse() {
         const HalfedgeMesh& c = mBefore.connectivity();
-        mMoved = patchesAt(c, mGone);
         mResult = mBefore;
         std::array<bool, 2> keepOrigin{};
         for (size_t side = 0; side < 2; ++side) {
@@ -308,7 +306,6 @@ class Merge {
         HalfedgeMesh connectivity = c;
         connectivity.collapse(mEdge, keepOrigin);
         mResult.setConnectivity(std::move(connectivity));
-        std::erase_if(mMoved, [&](PatchId p) { return !mResult.connectivity().alive(p); });
     }
 
     // The handles of curves that had their end at the vertex that is gone move along.
@@ -355,34 +352,15 @@ class Merge {
         mResult.setSmoothJoins(std::move(joins));
     }
 
-    // Corners that came to the vertex take the colour that their neighbours have there.
-    void joinColours() {
-        const HalfedgeMesh& now = mResult.connectivity();
-        const auto moved = membership(mResult, patchSet(mMoved));
-        const auto colourAt = [&](HalfedgeId side) {
-            Barycentric corner(0);
-            corner[int(sideIndex(now, side))] = 1;
-            const ColourSample s = sampleColour(mResult, now.face(side), corner);
-            return s.alpha * s.srgb;
-        };
-        std::map<HalfedgeId, glm::dvec3> raises;
-        now.forEachOutgoing(mKept, [&](HalfedgeId side) {
-            if (!now.face(side).valid() || !moved[now.face(side).index]) return;
-            glm::dvec3 sum(0);
-            int count = 0;
-            for (const HalfedgeId other : fanOf(mResult, side))
-                if (!moved[now.face(other).index]) {
-                    sum += colourAt(other);
-                    ++count;
-                }
-            if (count > 0) raises[side] = sum / double(count) - colourAt(side);
-        });
-        for (const auto& [side, raise] : raises) {
-            CornerValues values{};
-            for (size_t channel = 0; channel < 3; ++channel)
-                values[channel][sideIndex(now, side)] = float(raise[int(channel)]);
-            const PatchId p = now.face(side);
-            mResult.setSpline(p, withCornersRaised(mResult.spline(p), mResult.colourBasis(), values));
+    // Patches of another shape show what was there before.
+    void transferColours() {
+        std::vector<PatchId> around = patchesAt(mBefore.connectivity(), mGone);
+        for (const PatchId p : patchesAt(mBefore.connectivity(), mKept)) around.push_back(p);
+        const PatchSet from = patchSet(std::move(around));
+        for (const PatchId p : mChanged) {
+            const LatticeTriangle shape = mResult.controlPoints(p);
+            if (shape.p == mBefore.controlPoints(p).p) continue;
+            mResult.setSpline(p, transferredColours(mBefore, from, p, toPixels(shape)));
         }
     }
 
@@ -390,7 +368,6 @@ class Merge {
     HalfedgeId mEdge;
     VertexId mGone, mKept;
     PatchMesh mResult;
-    std::vector<PatchId> mMoved;  // that had the vertex that is gone
     PatchSet mChanged;
 };
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <optional>
 
 #include "core/base/check.h"
@@ -164,17 +165,31 @@ void shade(const PatchMesh& mesh, const EdgeBlur& blur, const PixelGrid& grid, c
     }
 }
 
-// The mean of each n x n block of `fine`, into `image` from (x0, y0) on.
-void average(const Image& fine, int n, Image& image, int x0, int y0) {
-    const float share = 1 / float(n * n);
+// Pixels that no patch covers, or one that is left out, stay 0. A tile at a time, for the thread that will
+// write it.
+void clear(Image& image, const PixelRect& rect) {
     for (int c = 0; c < image.channels(); ++c)
-        for (int y = 0; y < fine.height() / n; ++y)
+        for (int y = rect.y0; y < rect.y1; ++y)
+            std::fill_n(image.plane(c).data() + size_t(y) * size_t(image.width()) + size_t(rect.x0),
+                        rect.x1 - rect.x0, 0.0F);
+}
+
+// The mean of each n x n block of `fine`, into `image` from (x0, y0) on.
+template <int n>
+void average(const Image& fine, Image& image, int x0, int y0) {
+    constexpr float kShare = 1 / float(n * n);
+    const size_t stride = size_t(fine.width());
+    for (int c = 0; c < image.channels(); ++c)
+        for (int y = 0; y < fine.height() / n; ++y) {
+            const float* from = fine.plane(c).data() + size_t(y * n) * stride;
+            float* to = &image.at(x0, y0 + y, c);
             for (int x = 0; x < fine.width() / n; ++x) {
                 float sum = 0;
                 for (int j = 0; j < n; ++j)
-                    for (int i = 0; i < n; ++i) sum += fine.at(x * n + i, y * n + j, c);
-                image.at(x0 + x, y0 + y, c) = share * sum;
+                    for (int i = 0; i < n; ++i) sum += from[size_t(j) * stride + size_t(x * n + i)];
+                to[x] = kShare * sum;
             }
+        }
 }
 
 }  // namespace
@@ -186,7 +201,7 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
     bool anyLeftOut = false;
     mesh.forEachPatch([&](PatchId p) { anyLeftOut = anyLeftOut || leftOut(mesh.attributes(p), options); });
     const int channels = anyLeftOut ? kMaxChannels : mesh.channels();
-    Image image(view.width, view.height, channels);
+    Image image = Image::unset(view.width, view.height, channels);
     // Sub-pixel centres are the pixel centres of the view n times as large.
     const int n = options.samples == 1 ? 1 : options.samples == 4 ? 2 : 4;
     View fine = view;
@@ -195,12 +210,12 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
     fine.height *= n;
     // Neither of the two is parallel throughout, so they are made side by side.
     std::optional<ScanConversion> scanned;
-    std::optional<EdgeBlur> blurred;
+    std::shared_ptr<const EdgeBlur> blurred;
     std::vector<Tile> tiles;
     parallelFor(2, 1, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             if (i > 0) {
-                blurred.emplace(mesh, options.sharpen);
+                blurred = edgeBlurOf(mesh, options.sharpen);
                 continue;
             }
             scanned.emplace(mesh, fine);
@@ -216,6 +231,7 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
         for (size_t i = begin; i < end && !stop; ++i) {
             const PixelRect& rect = tiles[i].rect;
             if (n == 1) {
+                clear(image, rect);
                 processTile(mesh, scan, tiles[i], batch, [&](const Batch& b) {
                     if (!leftOut(mesh.attributes(b.patch), options))
                         shade(mesh, blur, scan.grid(), b, image, 0, 0);
@@ -226,7 +242,10 @@ Result<Image> rasterize(const PatchMesh& mesh, const View& view, const Rasterize
                     if (!leftOut(mesh.attributes(b.patch), options))
                         shade(mesh, blur, scan.grid(), b, part, rect.x0, rect.y0);
                 });
-                average(part, n, image, rect.x0 / n, rect.y0 / n);
+                if (n == 2)
+                    average<2>(part, image, rect.x0 / 2, rect.y0 / 2);
+                else
+                    average<4>(part, image, rect.x0 / 4, rect.y0 / 4);
             }
             const double fraction = double(++done) / double(tiles.size());
             if (progress && !progress->step(fraction)) stop = true;

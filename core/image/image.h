@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/base/unset_allocator.h"
+
 namespace tessera {
 
 // Planar: plane c is `height` rows of `width` floats. 3 channels (R, G, B), or 4 with alpha where the picture
@@ -15,6 +17,16 @@ class Image {
     Image() = default;
     Image(int width, int height, int channels, float value = 0)
         : mWidth(width), mHeight(height), mChannels(channels), mData(planeSize() * size_t(channels), value) {}
+
+    // One whose values are yet to be set, all of them: memory that is not cleared first.
+    static Image unset(int width, int height, int channels) {
+        Image image;
+        image.mWidth = width;
+        image.mHeight = height;
+        image.mChannels = channels;
+        image.mData.resize(image.planeSize() * size_t(channels));
+        return image;
+    }
 
     int width() const { return mWidth; }
     int height() const { return mHeight; }
@@ -41,7 +53,7 @@ class Image {
     int mWidth = 0;
     int mHeight = 0;
     int mChannels = 0;
-    std::vector<float> mData;
+    std::vector<float, UnsetAllocator<float>> mData;
 };
 
 // The value of plane c at image point (x, y) by bilinear interpolation of the pixel centres; outside the

@@ -251,14 +251,13 @@ bool EdgeBlur::findFoot(const Feature& f, glm::dvec2 at, Foot& foot) {
         if (best >= square(foot.distance + f.flatness)) return false;
     }
     const double span = f.even ? kEvenSpan : 1.0 / kSegments;
-    Foot found{0, kNearer * foot.distance, {}};
+    Foot found{0, kNearer * foot.distance};
     bool nearer = false;  // The start, too: Newton's method may leave for a worse place.
     for (const double candidate :
          {refined(f.curve, at, t, std::max(0.0, t - span), std::min(1.0, t + span)), t}) {
-        const glm::dvec2 point = f.curve.at(candidate);
-        const double distance = glm::distance(point, at);
+        const double distance = glm::distance(f.curve.at(candidate), at);
         if (distance >= found.distance) continue;
-        found = {candidate, distance, point};
+        found = {candidate, distance};
         nearer = true;
     }
     if (nearer) foot = found;
@@ -267,6 +266,7 @@ bool EdgeBlur::findFoot(const Feature& f, glm::dvec2 at, Foot& foot) {
 
 double EdgeBlur::fade(const Feature& f, double t, double sigma) const {
     const Chain& chain = mChains[f.chain];
+    if (!chain.fadesAtBegin && !chain.fadesAtEnd) return 1;
     const double arc = f.arcAt(t);
     return blurFade(
         std::min(chain.fadesAtBegin ? arc : HUGE_VAL, chain.fadesAtEnd ? chain.length - arc : HUGE_VAL),
@@ -281,26 +281,12 @@ double EdgeBlur::strength(EdgeId e, double t) const {
 }
 
 // 0 left, 1 right.
-int EdgeBlur::sideOf(const Feature& f, const Reach& reach, PatchId p, glm::dvec2 at, const Foot& foot) {
+int EdgeBlur::sideOf(const Feature& f, const Reach& reach, PatchId p, glm::dvec2 at, double t) {
     if (p == f.patches[0]) return 0;
     if (p == f.patches[1]) return 1;
     if (reach.sides != 3) return reach.sides == 1 ? 0 : 1;
-    const glm::dvec2 tangent = foot.t <= 0   ? f.endTangents[0]
-                               : foot.t >= 1 ? f.endTangents[1]
-                                             : f.curve.derivative(foot.t);
-    return cross(tangent, at - foot.point) > 0 ? 0 : 1;
-}
-
-bool EdgeBlur::termAt(PatchId p, const Reach& reach, glm::dvec2 at, const Foot& foot, BlurTerm& term) const {
-    const Feature& f = mFeatures[reach.feature];
-    const double sigma = f.sigmaAt(foot.t);
-    if (sigma <= 0 || foot.distance >= kBlurReach * sigma) return false;
-    const double weight = blurShare(foot.distance / sigma) * fade(f, foot.t, sigma);
-    if (weight <= 0) return false;
-    const int own = sideOf(f, reach, p, at, foot);
-    term = {float(weight), f.patches[size_t(own)], f.patches[size_t(1 - own)], f.domainAt(own, foot.t),
-            f.domainAt(1 - own, foot.t)};
-    return true;
+    const glm::dvec2 tangent = t <= 0 ? f.endTangents[0] : t >= 1 ? f.endTangents[1] : f.curve.derivative(t);
+    return cross(tangent, at - f.curve.at(t)) > 0 ? 0 : 1;
 }
 
 int EdgeBlur::terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms>& out) const {
@@ -308,12 +294,12 @@ int EdgeBlur::terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms
     int count = 0;
     for (size_t i = mFirst[p.index], end = mFirst[p.index + 1]; i < end;) {
         const uint32_t chainIndex = mFeatures[mReaches[i].feature].chain;
-        Foot foot{0, mChains[chainIndex].reach, {}};
+        Foot foot{0, mChains[chainIndex].reach};
         const Reach* nearest = nullptr;
         for (; i < end && mFeatures[mReaches[i].feature].chain == chainIndex; ++i)
             if (findFoot(mFeatures[mReaches[i].feature], at, foot)) nearest = &mReaches[i];
         BlurTerm term;
-        if (!nearest || !termAt(p, *nearest, at, foot, term)) continue;
+        if (!nearest || !termAt(p, *nearest, at, foot, term, blurShare)) continue;
         if (count < kMaxBlurTerms) {
             out[size_t(count++)] = term;
         } else {
@@ -323,6 +309,22 @@ int EdgeBlur::terms(PatchId p, glm::dvec2 at, std::array<BlurTerm, kMaxBlurTerms
         }
     }
     return count;
+}
+
+std::shared_ptr<const EdgeBlur> EdgeBlurCache::get(const PatchMesh& mesh, double sharpen) {
+    const std::lock_guard lock(mMutex);
+    MeshGeometry geometry = mesh.geometry();
+    if (!mBlur || mSharpen != sharpen || mGeometry != geometry) {
+        mBlur = std::make_shared<const EdgeBlur>(mesh, sharpen);
+        mSharpen = sharpen;
+        mGeometry = std::move(geometry);
+    }
+    return mBlur;
+}
+
+std::shared_ptr<const EdgeBlur> edgeBlurOf(const PatchMesh& mesh, double sharpen) {
+    if (const auto& cache = mesh.edgeBlurCache()) return cache->get(mesh, sharpen);
+    return std::make_shared<const EdgeBlur>(mesh, sharpen);
 }
 
 void blurredColour(const PatchMesh& mesh, const EdgeBlur& blur, PatchId p, const Barycentric& at,

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -103,13 +105,24 @@ class EdgeBlur {
     struct Foot {
         double t = 0;
         double distance = 0;  // px
-        glm::dvec2 point{0};
     };
     // Where the nearest parameter of even features is sought: this far from the share of the base.
     static constexpr double kEvenSpan = .3;
     // Sets `term` to that of `at` in patch p, whose nearest point on a chain is `foot`; false where it has
-    // none.
-    bool termAt(PatchId p, const Reach& reach, glm::dvec2 at, const Foot& foot, BlurTerm& term) const;
+    // none. share(x) is blurShare(x) for 0 <= x < kBlurReach, or as good.
+    template <class Share>
+    bool termAt(PatchId p, const Reach& reach, glm::dvec2 at, const Foot& foot, BlurTerm& term,
+                Share&& share) const {
+        const Feature& f = mFeatures[reach.feature];
+        const double sigma = f.sigmaAt(foot.t);
+        if (sigma <= 0 || foot.distance >= kBlurReach * sigma) return false;
+        const double weight = share(foot.distance / sigma) * fade(f, foot.t, sigma);
+        if (weight <= 0) return false;
+        const int own = sideOf(f, reach, p, at, foot.t);
+        term = {float(weight), f.patches[size_t(own)], f.patches[size_t(1 - own)], f.domainAt(own, foot.t),
+                f.domainAt(1 - own, foot.t)};
+        return true;
+    }
 
   private:
     static constexpr uint32_t kNone = 0xffffffff;
@@ -121,7 +134,7 @@ class EdgeBlur {
     void joinTangents(size_t first, bool closed);
     void collectReaches(const PatchMesh& mesh);
     static bool findFoot(const Feature& feature, glm::dvec2 at, Foot& foot);
-    static int sideOf(const Feature& feature, const Reach& reach, PatchId p, glm::dvec2 at, const Foot& foot);
+    static int sideOf(const Feature& feature, const Reach& reach, PatchId p, glm::dvec2 at, double t);
 
     std::vector<Feature> mFeatures;
     std::vector<Chain> mChains;
@@ -129,6 +142,22 @@ class EdgeBlur {
     std::vector<uint32_t> mFirst;      // by patch id, into mReaches; empty where nothing is blurred
     std::vector<Reach> mReaches;       // of each patch in the order of mFeatures
 };
+
+// The index of one geometry: what was made for a mesh serves its copies, and those whose colours alone have
+// changed, until one with another geometry asks. Thread-safe.
+class EdgeBlurCache {
+  public:
+    std::shared_ptr<const EdgeBlur> get(const PatchMesh& mesh, double sharpen);
+
+  private:
+    std::mutex mMutex;  // held while an index is made, so that it is made once
+    MeshGeometry mGeometry;
+    double mSharpen = 1;
+    std::shared_ptr<const EdgeBlur> mBlur;  // of both; or none yet
+};
+
+// An EdgeBlur of the mesh, from its cache where that has it.
+std::shared_ptr<const EdgeBlur> edgeBlurOf(const PatchMesh& mesh, double sharpen = 1);
 
 // The colour of patch p in the mesh's basis at parameters `at`, whose image point is `point`: what renderers
 // show, in double precision. Sets out[channel].

@@ -1,9 +1,11 @@
 // Blurred features at many points of a patch: addBlur, the fast twin of blurredColour (edge_blur.h). Lengths
 // are in single precision, in image pixels from an origin of the patch's own.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "core/base/check.h"
 #include "core/base/vector_clones.h"
@@ -221,15 +223,10 @@ class ChainFeet {
 
     // Calls body(point, its index among the reaches, foot) for each point that has one.
     template <class Body>
-    void forEach(const EdgeBlur& blur, std::span<const EdgeBlur::Reach> reaches, Body&& body) const {
-        for (size_t k = 0; k < mCount; ++k) {
-            if (mNearest[k] == kNone) continue;
-            const EdgeBlur::Reach& reach = reaches[mNearest[k]];
-            const double t = mT[k];
-            body(k, reach,
-                 EdgeBlur::Foot{t, std::sqrt(double(mSquared[k])),
-                                blur.features()[reach.feature].curve.at(t)});
-        }
+    void forEach(std::span<const EdgeBlur::Reach> reaches, Body&& body) const {
+        for (size_t k = 0; k < mCount; ++k)
+            if (mNearest[k] != kNone)
+                body(k, reaches[mNearest[k]], EdgeBlur::Foot{mT[k], std::sqrt(double(mSquared[k]))});
     }
 
   private:
@@ -242,11 +239,19 @@ class ChainFeet {
         if (std::max(gap.x, gap.y) > reach) return false;
         constexpr double kSlack = .01;  // px, more than the rounding of single precision
         const double limit = reach + f.bend + kSlack;
+        const double away = limit + .5 * glm::distance(mBox.lo, mBox.hi);
+        if (f.base.nearest(.5 * (mBox.lo + mBox.hi)).second > away * away) return false;
         const auto limit2 = float(limit * limit);
         squaredDistances(LaneSegment(f.base, mOrigin), mX, mY, padded(mCount), mFeetSquared);
-        for (size_t k = 0; k < mCount; ++k) {
-            mIndex[mFound] = uint16_t(k);
-            mFound += size_t(mFeetSquared[k] < limit2);
+        // Most vectors of points are out of reach as a whole.
+        for (size_t first = 0; first < mCount; first += kVector) {
+            Lanes squared;
+            load(mFeetSquared + first, squared);
+            if (!any(squared < Lanes{} + limit2)) continue;
+            for (size_t k = first; k < std::min(first + kVector, mCount); ++k) {
+                mIndex[mFound] = uint16_t(k);
+                mFound += size_t(mFeetSquared[k] < limit2);
+            }
         }
         return mFound > 0;
     }
@@ -282,41 +287,90 @@ class ChainFeet {
     uint32_t mNearest[kMaxBlurPoints];
 };
 
-// Part of a point's colour: weight times a patch's at a place in its domain.
-struct Share {
-    PatchId patch;
-    uint32_t point;
-    float weight;
-    glm::vec2 at;
+// blurShare by a table, whose steps are small enough for straight lines between them to be within 1e-7 of it.
+class ShareTable {
+  public:
+    ShareTable() {
+        for (size_t i = 0; i < mShares.size(); ++i) mShares[i] = float(blurShare(double(i) / kPerSigma));
+    }
+
+    double operator()(double x) const {
+        const auto place = float(x * kPerSigma);
+        const auto i = std::min(size_t(place), mShares.size() - 2);
+        return double(mShares[i] + (place - float(i)) * (mShares[i + 1] - mShares[i]));
+    }
+
+  private:
+    static constexpr double kPerSigma = 512;
+    std::array<float, size_t(kBlurReach* kPerSigma) + 1> mShares;
 };
 
-void addTerm(const BlurTerm& term, size_t point, std::vector<Share>& shares) {
-    shares.push_back({term.other, uint32_t(point), term.weight, term.otherAt});
-    shares.push_back({term.own, uint32_t(point), -term.weight, term.ownAt});
-}
-
-// Adds the shares to the points' colours, patch by patch for the vector code; a point's keep their order.
-void addShares(const PatchMesh& mesh, std::vector<Share>& shares, float* const* colours) {
-    std::stable_sort(shares.begin(), shares.end(),
-                     [](const Share& a, const Share& b) { return a.patch < b.patch; });
-    constexpr size_t kBatch = 256;
-    float x[kBatch], y[kBatch], value[kMaxChannels][kBatch];
-    float* out[kMaxChannels];
-    for (int c = 0; c < kMaxChannels; ++c) out[c] = value[c];
-    for (size_t i = 0; i < shares.size();) {
-        size_t n = 0;
-        while (i + n < shares.size() && n < kBatch && shares[i + n].patch == shares[i].patch) {
-            x[n] = shares[i + n].at.x;
-            y[n] = shares[i + n].at.y;
-            ++n;
-        }
-        evaluateSplines(mesh.spline(shares[i].patch), mesh.channels(), x, y, n, out);
-        for (int c = 0; c < mesh.channels(); ++c)
-            for (size_t k = 0; k < n; ++k)
-                colours[c][shares[i + k].point] += shares[i + k].weight * value[c][k];
-        i += n;
+// Parts of points' colours: weight times a patch's at a place in its domain.
+class Shares {
+  public:
+    void add(const BlurTerm& term, size_t point) {
+        of(term.other).push_back({uint32_t(point), term.weight, term.otherAt});
+        of(term.own).push_back({uint32_t(point), -term.weight, term.ownAt});
     }
-}
+
+    template <class Predicate>
+    void removePoints(Predicate&& remove) {
+        for (size_t i = 0; i < mPatches; ++i)
+            std::erase_if(mByPatch[i].parts, [&](const Part& part) { return remove(part.point); });
+    }
+
+    // Adds the parts to the points' colours and forgets them: patch by patch for the vector code, by
+    // ascending id, so that a point's come in an order of its own.
+    void addTo(const PatchMesh& mesh, float* const* colours) {
+        std::sort(mByPatch.begin(), mByPatch.begin() + std::ptrdiff_t(mPatches),
+                  [](const OfPatch& a, const OfPatch& b) { return a.patch < b.patch; });
+        for (size_t i = 0; i < mPatches; ++i) addParts(mesh, mByPatch[i].patch, mByPatch[i].parts, colours);
+        mPatches = 0;
+    }
+
+  private:
+    struct Part {
+        uint32_t point;
+        float weight;
+        glm::vec2 at;
+    };
+    struct OfPatch {
+        PatchId patch;
+        std::vector<Part> parts;
+    };
+
+    // A chain's neighbouring points are mostly beside the same edge, so that few patches come, in turns.
+    std::vector<Part>& of(PatchId patch) {
+        for (size_t i = mPatches; i-- > 0;)
+            if (mByPatch[i].patch == patch) return mByPatch[i].parts;
+        if (mPatches == mByPatch.size()) mByPatch.emplace_back();
+        OfPatch& fresh = mByPatch[mPatches++];
+        fresh.patch = patch;
+        fresh.parts.clear();
+        return fresh.parts;
+    }
+
+    static void addParts(const PatchMesh& mesh, PatchId patch, std::span<const Part> parts,
+                         float* const* colours) {
+        constexpr size_t kBatch = 256;
+        float x[kBatch], y[kBatch], value[kMaxChannels][kBatch];
+        float* out[kMaxChannels];
+        for (int c = 0; c < kMaxChannels; ++c) out[c] = value[c];
+        for (; !parts.empty(); parts = parts.subspan(std::min(kBatch, parts.size()))) {
+            const size_t n = std::min(kBatch, parts.size());
+            for (size_t k = 0; k < n; ++k) {
+                x[k] = parts[k].at.x;
+                y[k] = parts[k].at.y;
+            }
+            evaluateSplines(mesh.spline(patch), mesh.channels(), x, y, n, out);
+            for (int c = 0; c < mesh.channels(); ++c)
+                for (size_t k = 0; k < n; ++k) colours[c][parts[k].point] += parts[k].weight * value[c][k];
+        }
+    }
+
+    std::vector<OfPatch> mByPatch;  // the first mPatches are in use; the others keep their memory
+    size_t mPatches = 0;
+};
 
 }  // namespace
 
@@ -327,29 +381,29 @@ void addBlur(const PatchMesh& mesh, const EdgeBlur& blur, PatchId p, glm::dvec2 
     const auto at = [&](size_t point) { return origin + glm::dvec2(x[point], y[point]); };
     const auto reaches = blur.reaches(p);
     ChainFeet feet(origin, x, y, count);
-    std::vector<Share> shares;
+    static const ShareTable share;
+    Shares shares;
     std::array<uint8_t, kMaxBlurPoints> terms{};
     bool tooMany = false;
     for (size_t i = 0; i < reaches.size();) {
         if (!feet.search(blur, reaches, i)) continue;
-        feet.forEach(blur, reaches,
-                     [&](size_t point, const EdgeBlur::Reach& reach, const EdgeBlur::Foot& foot) {
-                         BlurTerm term;
-                         if (!blur.termAt(p, reach, at(point), foot, term)) return;
-                         addTerm(term, point, shares);
-                         if (terms[point] <= kMaxBlurTerms) ++terms[point];
-                         tooMany = tooMany || terms[point] > kMaxBlurTerms;
-                     });
+        feet.forEach(reaches, [&](size_t point, const EdgeBlur::Reach& reach, const EdgeBlur::Foot& foot) {
+            BlurTerm term;
+            if (!blur.termAt(p, reach, at(point), foot, term, share)) return;
+            shares.add(term, point);
+            if (terms[point] <= kMaxBlurTerms) ++terms[point];
+            tooMany = tooMany || terms[point] > kMaxBlurTerms;
+        });
     }
     if (tooMany) {  // hardly ever: the plain twin finds those that count
-        std::erase_if(shares, [&](const Share& s) { return terms[s.point] > kMaxBlurTerms; });
+        shares.removePoints([&](uint32_t point) { return terms[point] > kMaxBlurTerms; });
         for (size_t k = 0; k < count; ++k) {
             if (terms[k] <= kMaxBlurTerms) continue;
             std::array<BlurTerm, kMaxBlurTerms> found;
-            for (int i = 0, n = blur.terms(p, at(k), found); i < n; ++i) addTerm(found[size_t(i)], k, shares);
+            for (int i = 0, n = blur.terms(p, at(k), found); i < n; ++i) shares.add(found[size_t(i)], k);
         }
     }
-    addShares(mesh, shares, colours);
+    shares.addTo(mesh, colours);
 }
 
 }  // namespace tessera

@@ -21,6 +21,9 @@ class HalfedgeMesh {
   public:
     HalfedgeMesh() = default;
 
+    // Whether every element, dead ones too, is the same.
+    bool operator==(const HalfedgeMesh&) const = default;
+
     // Each triangle's corners in positive orientation. Fails a check where a directed edge appears twice. An
     // empty mesh where `stop` is asked for meanwhile.
     static HalfedgeMesh fromTriangles(size_t vertexCount, std::span<const std::array<uint32_t, 3>> triangles,
@@ -114,6 +117,8 @@ class HalfedgeMesh {
         HalfedgeId next;
         VertexId origin;
         FaceId face;
+
+        bool operator==(const Halfedge&) const = default;
     };
 
     void setNext(HalfedgeId h, HalfedgeId to) { mHalfedges.edit(h.index).next = to; }

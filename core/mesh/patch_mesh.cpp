@@ -2,6 +2,7 @@
 #include "core/mesh/patch_mesh.h"
 
 #include "core/base/check.h"
+#include "core/mesh/edge_blur.h"
 
 namespace tessera {
 
@@ -43,7 +44,8 @@ PatchMesh::PatchMesh(int width, int height, int channels, HalfedgeMesh connectiv
       mCurves(mConnectivity.edgeCapacity()),
       mInteriors(mConnectivity.faceCapacity()),
       mSplines(mConnectivity.faceCapacity()),
-      mAttributes(mConnectivity.faceCapacity()) {
+      mAttributes(mConnectivity.faceCapacity()),
+      mEdgeBlurCache(std::make_shared<EdgeBlurCache>()) {
     TESSERA_CHECK(positions.size() == mConnectivity.vertexCapacity());
     TESSERA_CHECK(channels == 3 || channels == 4);
     for (uint32_t v = 0; v < positions.size(); ++v) setPosition(VertexId(v), positions[v]);

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,18 @@ struct PatchAttributes {
     bool operator==(const PatchAttributes&) const = default;
 };
 
+// What a mesh is but its colours and attributes: a snapshot to compare with.
+struct MeshGeometry {
+    HalfedgeMesh connectivity;
+    PagedArray<LatticePoint> positions;
+    PagedArray<EdgeCurve> curves;
+    PagedArray<LatticePoint> interiors;
+
+    bool operator==(const MeshGeometry&) const = default;
+};
+
+class EdgeBlurCache;  // edge_blur.h
+
 class PatchMesh {
   public:
     PatchMesh() = default;
@@ -74,6 +87,10 @@ class PatchMesh {
     const PatchSpline& spline(PatchId p) const { return mSplines[p.index]; }
     const PatchAttributes& attributes(PatchId p) const { return mAttributes[p.index]; }
     const std::vector<SmoothJoin>& smoothJoins() const { return mSmoothJoins; }
+
+    MeshGeometry geometry() const { return {mConnectivity, mPositions, mCurves, mInteriors}; }
+    // That of this mesh and all copies of it; none where the mesh was made without patches.
+    const std::shared_ptr<EdgeBlurCache>& edgeBlurCache() const { return mEdgeBlurCache; }
 
     // Another connectivity over the same elements (after a flip, say), and new ones (after a split), whose
     // geometry, colours and attributes are default values. The caller keeps the geometry consistent.
@@ -128,6 +145,7 @@ class PatchMesh {
     PagedArray<PatchSpline, 6> mSplines;
     PagedArray<PatchAttributes> mAttributes;
     std::vector<SmoothJoin> mSmoothJoins;
+    std::shared_ptr<EdgeBlurCache> mEdgeBlurCache;
 };
 
 BezierCurve toPixels(const std::array<LatticePoint, 4>& controlPoints);

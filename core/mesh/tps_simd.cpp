@@ -16,12 +16,19 @@ namespace tessera {
 
 namespace {
 
-// phi = s^2 log s = (log 2 / 2) q log2 q with q = s^2; the constant goes into the alphas. With q = 2^e (1 +
-// t), log2 q = e + P(t): P interpolates log2(1 + t) at the Chebyshev nodes of [0, 1], so that it is
-// within 3.2e-7. At q = 0 the exponent bits give e = -127 and the product is the wanted 0, without a branch.
+// phi = s^2 log s = (log 2 / 2) q log2 q with q = s^2; the constant goes into the alphas. With q = 2^e m, 1
+// <= m < 2, and r = m / c - 1, c being the middle of the eighth of [1, 2) that m is in, log2 q = e + log2 c +
+// P(r): P interpolates log2(1 + r) at the Chebyshev nodes of the |r| <= 1 / 17 that there are, and the middle
+// of what is left in each eighth goes into its log2 c, so that the sum is within 5.7e-7. At q = 0 the
+// exponent bits give e = -127 and the product is the wanted 0, without a branch. Permutations look the
+// eighths up.
 constexpr float kHalfLog2 = .34657359f;
-constexpr float kLogPolynomial[8] = {3.19697829e-07f, 1.44265211f, -.720386612f, .472499525f,
-                                     -.323115935f,    .190420831f, -.076848726f, .0147787208f};
+constexpr int kEighths = 8, kEighthShift = 20;  // the three highest bits of the mantissa
+constexpr float kInverseMiddle[kEighths] = {.941176474f, .842105269f, .761904776f, .695652187f,
+                                            .639999986f, .592592597f, .551724136f, .516129017f};
+constexpr float kLogMiddle[kEighths] = {.0874633789f, .247928053f, .392317951f, .523562491f,
+                                        .643856764f,  .754887998f, .857981503f, .954196811f};
+constexpr float kLogPolynomial[3] = {1.44269466f, -.722598076f, .481898904f};  // times r, r^2, r^3
 
 // Places of centres in single precision.
 template <size_t kCount>
@@ -36,19 +43,22 @@ struct FloatCentres {
     std::array<float, kCount> x, y;
 };
 
-// A spline with its centres side by side and the same number of terms for each channel, the missing alphas 0.
+// A spline with its centres side by side. The first `shared` terms are of all channels, the missing alphas 0;
+// those beyond are of channel 0 alone, which mostly has the most.
 struct Packed {
     static constexpr int kMaxTerms = 255;
 
     Packed(const PatchSpline& spline, int channels) : terms(spline.maxTerms(channels)) {
         TESSERA_CHECK(size_t(terms) <= spline.centreCount());
         placeCentres(spline);
+        shared = spline.terms[0] < terms ? terms : 0;
+        for (int c = 1; c < channels; ++c) shared = std::max<int>(shared, spline.terms[size_t(c)]);
         const float* k = spline.coefficients.data();
         for (int c = 0; c < channels; ++c) {
             const int own = spline.terms[size_t(c)];
             for (int i = 0; i < 3; ++i) affine[c][i] = k[i];
             for (int i = 0; i < own; ++i) alpha[c][i] = kHalfLog2 * k[3 + i];
-            for (int i = own; i < terms; ++i) alpha[c][i] = 0;
+            for (int i = own; i < shared; ++i) alpha[c][i] = 0;
             k += 3 + own;
         }
     }
@@ -73,7 +83,7 @@ struct Packed {
         }
     }
 
-    int terms;
+    int terms, shared;
     float affine[kMaxChannels][3];
     float centreX[kMaxTerms];
     float centreY[kMaxTerms];
@@ -84,10 +94,10 @@ float scaledKernel(float q) {
     constexpr uint32_t kOne = 0x3f800000;
     const auto bits = std::bit_cast<uint32_t>(q);
     const auto e = float(int32_t(bits >> 23) - 127);
-    const float t = std::bit_cast<float>((bits & 0x7fffff) | kOne) - 1;
-    float p = kLogPolynomial[7];
-    for (int i = 6; i >= 0; --i) p = p * t + kLogPolynomial[i];
-    return q * (e + p);
+    const uint32_t eighth = bits >> kEighthShift & (kEighths - 1);
+    const float r = std::bit_cast<float>((bits & 0x7fffff) | kOne) * kInverseMiddle[eighth] - 1;
+    const float p = (kLogPolynomial[2] * r + kLogPolynomial[1]) * r + kLogPolynomial[0];
+    return q * (p * r + (e + kLogMiddle[eighth]));
 }
 
 void evaluateScalar(const Packed& s, int channels, const float* x, const float* y, size_t count,
@@ -99,7 +109,7 @@ void evaluateScalar(const Packed& s, int channels, const float* x, const float* 
         for (int k = 0; k < s.terms; ++k) {
             const float dx = x[i] - s.centreX[k], dy = y[i] - s.centreY[k];
             const float phi = scaledKernel(dx * dx + dy * dy);
-            for (int c = 0; c < channels; ++c) sum[c] += s.alpha[c][k] * phi;
+            for (int c = 0; c < (k < s.shared ? channels : 1); ++c) sum[c] += s.alpha[c][k] * phi;
         }
         for (int c = 0; c < channels; ++c) out[c][i] = sum[c];
     }
@@ -115,16 +125,27 @@ TESSERA_AVX2 inline __attribute__((always_inline)) __m256 scaledKernel(__m256 q)
         _mm256_cvtepi32_ps(_mm256_sub_epi32(_mm256_srli_epi32(bits, 23), _mm256_set1_epi32(127)));
     const __m256 one = _mm256_set1_ps(1);
     const __m256 mantissa = _mm256_and_ps(q, _mm256_castsi256_ps(_mm256_set1_epi32(0x7fffff)));
-    const __m256 t = _mm256_sub_ps(_mm256_or_ps(mantissa, one), one);
-    __m256 p = _mm256_set1_ps(kLogPolynomial[7]);
-    p = _mm256_fmadd_ps(p, t, _mm256_set1_ps(kLogPolynomial[6]));
-    p = _mm256_fmadd_ps(p, t, _mm256_set1_ps(kLogPolynomial[5]));
-    p = _mm256_fmadd_ps(p, t, _mm256_set1_ps(kLogPolynomial[4]));
-    p = _mm256_fmadd_ps(p, t, _mm256_set1_ps(kLogPolynomial[3]));
-    p = _mm256_fmadd_ps(p, t, _mm256_set1_ps(kLogPolynomial[2]));
-    p = _mm256_fmadd_ps(p, t, _mm256_set1_ps(kLogPolynomial[1]));
-    p = _mm256_fmadd_ps(p, t, _mm256_set1_ps(kLogPolynomial[0]));
-    return _mm256_mul_ps(q, _mm256_add_ps(e, p));
+    // A permutation minds the lowest three bits of each index alone.
+    const __m256i eighth = _mm256_srli_epi32(bits, kEighthShift);
+    const __m256 inverse = _mm256_permutevar8x32_ps(_mm256_loadu_ps(kInverseMiddle), eighth);
+    const __m256 logarithm = _mm256_add_ps(e, _mm256_permutevar8x32_ps(_mm256_loadu_ps(kLogMiddle), eighth));
+    const __m256 r = _mm256_fmsub_ps(_mm256_or_ps(mantissa, one), inverse, one);
+    __m256 p = _mm256_fmadd_ps(_mm256_set1_ps(kLogPolynomial[2]), r, _mm256_set1_ps(kLogPolynomial[1]));
+    p = _mm256_fmadd_ps(p, r, _mm256_set1_ps(kLogPolynomial[0]));
+    return _mm256_mul_ps(q, _mm256_fmadd_ps(p, r, logarithm));
+}
+
+// Adds term k of the first kOf channels to the sums of kVectors vectors of points.
+template <int kOf, int kVectors>
+TESSERA_AVX2 inline __attribute__((always_inline)) void addTerm(const Packed& s, int k, const __m256* px,
+                                                                const __m256* py, __m256 (*sum)[kVectors]) {
+    const __m256 cx = _mm256_broadcast_ss(s.centreX + k), cy = _mm256_broadcast_ss(s.centreY + k);
+    for (int v = 0; v < kVectors; ++v) {
+        const __m256 dx = _mm256_sub_ps(px[v], cx), dy = _mm256_sub_ps(py[v], cy);
+        const __m256 phi = scaledKernel(_mm256_fmadd_ps(dy, dy, _mm256_mul_ps(dx, dx)));
+        for (int c = 0; c < kOf; ++c)
+            sum[c][v] = _mm256_fmadd_ps(_mm256_broadcast_ss(s.alpha[c] + k), phi, sum[c][v]);
+    }
 }
 
 // Points [first, first + 8 kVectors) of x and y. Two vectors at a time keep both multipliers busy over the
@@ -142,15 +163,8 @@ TESSERA_AVX2 inline __attribute__((always_inline)) void evaluateBlock(const Pack
                 _mm256_set1_ps(s.affine[c][2]), py[v],
                 _mm256_fmadd_ps(_mm256_set1_ps(s.affine[c][1]), px[v], _mm256_set1_ps(s.affine[c][0])));
     }
-    for (int k = 0; k < s.terms; ++k) {
-        const __m256 cx = _mm256_broadcast_ss(s.centreX + k), cy = _mm256_broadcast_ss(s.centreY + k);
-        for (int v = 0; v < kVectors; ++v) {
-            const __m256 dx = _mm256_sub_ps(px[v], cx), dy = _mm256_sub_ps(py[v], cy);
-            const __m256 phi = scaledKernel(_mm256_fmadd_ps(dy, dy, _mm256_mul_ps(dx, dx)));
-            for (int c = 0; c < kChannels; ++c)
-                sum[c][v] = _mm256_fmadd_ps(_mm256_broadcast_ss(s.alpha[c] + k), phi, sum[c][v]);
-        }
-    }
+    for (int k = 0; k < s.shared; ++k) addTerm<kChannels, kVectors>(s, k, px, py, sum);
+    for (int k = s.shared; k < s.terms; ++k) addTerm<1, kVectors>(s, k, px, py, sum);
     for (int v = 0; v < kVectors; ++v)
         for (int c = 0; c < kChannels; ++c) _mm256_storeu_ps(out[c] + first + 8 * v, sum[c][v]);
 }
@@ -176,6 +190,17 @@ TESSERA_AVX2 void evaluateAvx2(const Packed& s, const float* x, const float* y, 
 
 #define TESSERA_AVX512 __attribute__((target("avx512f")))
 
+constexpr struct Twice {
+    constexpr Twice() {
+        for (int i = 0; i < 2 * kEighths; ++i) {
+            inverse[i] = kInverseMiddle[i % kEighths];
+            logarithm[i] = kLogMiddle[i % kEighths];
+        }
+    }
+
+    float inverse[2 * kEighths]{}, logarithm[2 * kEighths]{};
+} kTwice;
+
 // The same operations as with 8 lanes, hence the same bits: getexp and getmant give the exponent and the
 // mantissa that are taken from the bits there. The exponent of 0 has to be finite. (Masked, since GCC 12
 // warns of its own headers' unmasked ones.)
@@ -183,17 +208,29 @@ TESSERA_AVX512 inline __attribute__((always_inline)) __m512 scaledKernel(__m512 
     constexpr __mmask16 kAll = 0xffff;
     const __m512 one = _mm512_set1_ps(1), least = _mm512_set1_ps(std::numeric_limits<float>::min());
     const __m512 e = _mm512_maskz_getexp_ps(kAll, _mm512_maskz_max_ps(kAll, q, least));
-    const __m512 t =
-        _mm512_sub_ps(_mm512_maskz_getmant_ps(kAll, q, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_src), one);
-    __m512 p = _mm512_set1_ps(kLogPolynomial[7]);
-    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[6]));
-    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[5]));
-    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[4]));
-    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[3]));
-    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[2]));
-    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[1]));
-    p = _mm512_fmadd_ps(p, t, _mm512_set1_ps(kLogPolynomial[0]));
-    return _mm512_mul_ps(q, _mm512_add_ps(e, p));
+    // A permutation of sixteen minds one bit more, hence the eighths twice.
+    const __m512i eighth = _mm512_maskz_srli_epi32(kAll, _mm512_castps_si512(q), kEighthShift);
+    const __m512 inverse = _mm512_maskz_permutexvar_ps(kAll, eighth, _mm512_loadu_ps(kTwice.inverse));
+    const __m512 middle = _mm512_maskz_permutexvar_ps(kAll, eighth, _mm512_loadu_ps(kTwice.logarithm));
+    const __m512 m = _mm512_maskz_getmant_ps(kAll, q, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_src);
+    const __m512 r = _mm512_fmsub_ps(m, inverse, one);
+    __m512 p = _mm512_fmadd_ps(_mm512_set1_ps(kLogPolynomial[2]), r, _mm512_set1_ps(kLogPolynomial[1]));
+    p = _mm512_fmadd_ps(p, r, _mm512_set1_ps(kLogPolynomial[0]));
+    return _mm512_mul_ps(q, _mm512_fmadd_ps(p, r, _mm512_add_ps(e, middle)));
+}
+
+// addTerm for 16 lanes.
+template <int kOf, int kVectors>
+TESSERA_AVX512 inline __attribute__((always_inline)) void addWideTerm(const Packed& s, int k,
+                                                                      const __m512* px, const __m512* py,
+                                                                      __m512 (*sum)[kVectors]) {
+    const __m512 cx = _mm512_set1_ps(s.centreX[k]), cy = _mm512_set1_ps(s.centreY[k]);
+    for (int v = 0; v < kVectors; ++v) {
+        const __m512 dx = _mm512_sub_ps(px[v], cx), dy = _mm512_sub_ps(py[v], cy);
+        const __m512 phi = scaledKernel(_mm512_fmadd_ps(dy, dy, _mm512_mul_ps(dx, dx)));
+        for (int c = 0; c < kOf; ++c)
+            sum[c][v] = _mm512_fmadd_ps(_mm512_set1_ps(s.alpha[c][k]), phi, sum[c][v]);
+    }
 }
 
 // evaluateBlock for 16 lanes; `mask` says which of the last vector's points there are.
@@ -212,15 +249,8 @@ TESSERA_AVX512 inline __attribute__((always_inline)) void evaluateWideBlock(cons
                 _mm512_set1_ps(s.affine[c][2]), py[v],
                 _mm512_fmadd_ps(_mm512_set1_ps(s.affine[c][1]), px[v], _mm512_set1_ps(s.affine[c][0])));
     }
-    for (int k = 0; k < s.terms; ++k) {
-        const __m512 cx = _mm512_set1_ps(s.centreX[k]), cy = _mm512_set1_ps(s.centreY[k]);
-        for (int v = 0; v < kVectors; ++v) {
-            const __m512 dx = _mm512_sub_ps(px[v], cx), dy = _mm512_sub_ps(py[v], cy);
-            const __m512 phi = scaledKernel(_mm512_fmadd_ps(dy, dy, _mm512_mul_ps(dx, dx)));
-            for (int c = 0; c < kChannels; ++c)
-                sum[c][v] = _mm512_fmadd_ps(_mm512_set1_ps(s.alpha[c][k]), phi, sum[c][v]);
-        }
-    }
+    for (int k = 0; k < s.shared; ++k) addWideTerm<kChannels, kVectors>(s, k, px, py, sum);
+    for (int k = s.shared; k < s.terms; ++k) addWideTerm<1, kVectors>(s, k, px, py, sum);
     for (int v = 0; v < kVectors; ++v)
         for (int c = 0; c < kChannels; ++c)
             _mm512_mask_storeu_ps(out[c] + first + 16 * v, v + 1 < kVectors ? kAll : mask, sum[c][v]);

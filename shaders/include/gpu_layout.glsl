@@ -16,7 +16,6 @@ layout(std140, binding = 0) uniform ViewBlock {
     uint pieceCapacity;   // of a draw
     uint drawVertices;    // about as many are tessellated in a draw; 0: one draw does it all
     uint drawCount;
-    float sharpen;        // 0: no blur
     uint showHidden;
 }
 view;
@@ -29,6 +28,7 @@ layout(binding = 5) uniform usamplerBuffer reachTexels;
 layout(binding = 6) uniform usamplerBuffer featureTexels;
 layout(binding = 7) uniform usamplerBuffer edgeLevelTexels;
 layout(binding = 8) uniform usamplerBuffer pieceTexels;
+layout(binding = 9) uniform isamplerBuffer rectTexels;
 
 const uint kNoPatch = 0xffffffffu;
 

@@ -20,6 +20,7 @@
 #include "core/edit/snap.h"
 #include "core/edit/split_merge.h"
 #include "core/export/rasterize.h"
+#include "tests/support/colour_change.h"
 
 namespace {
 
@@ -161,6 +162,24 @@ void measureShape(const PatchMesh& mesh) {
     measure("merge an edge", 11, [&](int i) {
         PatchMesh copy = mesh;
         mergeEdge(copy, EdgeId(uint32_t(i * 501)));
+    });
+    const auto changeBy = [&](const char* what, const auto& edit) {
+        std::vector<double> changes;
+        for (uint32_t i = 0; i < 101; ++i) {
+            PatchMesh copy = mesh;
+            const Result<Touched> touched = edit(copy, i * 501);
+            if (touched) changes.push_back(testing::meanColourChange(mesh, copy, touched->patches));
+        }
+        const double worst = *std::max_element(changes.begin(), changes.end());
+        std::printf("%-46s %9.3f levels, at most %.3f, of %zu\n", what, median(changes), worst,
+                    changes.size());
+    };
+    changeBy("colour change by a merge",
+             [](PatchMesh& copy, uint32_t i) { return mergeEdge(copy, EdgeId(i)); });
+    changeBy("colour change by the split of an edge",
+             [](PatchMesh& copy, uint32_t i) { return splitEdge(copy, EdgeId(i), .4); });
+    changeBy("colour change by the split of a patch", [&](PatchMesh& copy, uint32_t i) {
+        return splitPatch(copy, PatchId(i % uint32_t(mesh.patchCount())), Barycentric(1.0 / 3));
     });
 }
 

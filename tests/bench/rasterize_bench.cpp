@@ -1,10 +1,14 @@
 // Frames a second of both CPU renderers, and the cost of a spline evaluation.
+//
+//   rasterize_bench [DOCUMENT...]   the fast one alone, of documents that fill views of three sizes
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/document/codec.h"
 #include "core/export/rasterize.h"
 #include "core/mesh/edge_blur.h"
 #include "tests/support/test_meshes.h"
@@ -94,10 +98,39 @@ void benchBlur() {
     });
 }
 
+// The least of each over `rounds` frames: other programs disturb the time of the processors, too.
+void benchDocument(const char* path) {
+    const auto document = loadDocument(path);
+    if (!document) {
+        std::fprintf(stderr, "%s\n", document.error().message.c_str());
+        return;
+    }
+    const PatchMesh& mesh = document->mesh;
+    std::printf("%s, %zu patches: milliseconds, and of all processors\n", path, mesh.patchCount());
+    for (const auto& [width, height] : {std::pair{768, 512}, {1920, 1080}, {3840, 2160}})
+        for (const int samples : {1, 4}) {
+            View view;
+            view.width = width;
+            view.height = height;
+            view.scale = glm::dvec2(std::max(double(width) / mesh.width(), double(height) / mesh.height()));
+            const int rounds = width < 1000 ? 60 : 12;
+            double processors = std::numeric_limits<double>::infinity();
+            const double wall = shortest(rounds, [&] {
+                const std::clock_t start = std::clock();
+                (void)rasterize(mesh, view, {samples});
+                processors = std::min(processors, double(std::clock() - start) * 1e3 / CLOCKS_PER_SEC);
+            });
+            std::printf("  %4d x %4d, %d sample%s %8.2f  (%.2f)\n", width, height, samples,
+                        samples > 1 ? "s" : " ", wall, processors);
+        }
+}
+
 }  // namespace
 }  // namespace tessera
 
-int main() {
+int main(int argc, char** argv) {
+    for (int i = 1; i < argc; ++i) tessera::benchDocument(argv[i]);
+    if (argc > 1) return 0;
     tessera::benchSplines();
     tessera::benchRenderers();
     tessera::benchBlur();

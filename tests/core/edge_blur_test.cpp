@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <utility>
@@ -248,6 +249,81 @@ TEST(EdgeBlur, DoesNotReachBeyondAnotherFeature) {
     EXPECT_FALSE(EdgeBlur(mesh).inReach(patchAt(50)));
     EXPECT_FALSE(EdgeBlur(mesh, 0).inReach(patchAt(32)));
     EXPECT_TRUE(EdgeBlur(mesh, 3).inReach(patchAt(50)));
+}
+
+// The same elements in memory of their own, with an index of their own.
+PatchMesh rebuilt(const PatchMesh& mesh) {
+    std::vector<LatticePoint> positions;
+    mesh.forEachVertex([&](VertexId v) { positions.push_back(mesh.position(v)); });
+    PatchMesh copy(mesh.width(), mesh.height(), mesh.channels(), mesh.connectivity(), positions);
+    mesh.forEachEdge([&](EdgeId e) { copy.setCurve(e, mesh.curve(e)); });
+    mesh.forEachPatch([&](PatchId p) {
+        copy.setInterior(p, mesh.interior(p));
+        copy.setSpline(p, mesh.spline(p));
+    });
+    return copy;
+}
+
+TEST(EdgeBlurCache, KeepsTheIndexWhileTheGeometryStays) {
+    PatchMesh mesh = bentCut(2);
+    const auto first = edgeBlurOf(mesh);
+    PatchMesh copy = mesh;
+    copy.setSpline(PatchId(0), constantSpline(kLeft));
+    copy.setAttributes(PatchId(1), {.hidden = true});
+    EXPECT_EQ(edgeBlurOf(copy), first);
+    // Moved and put back without being drawn in between: the values count, not what was written.
+    const LatticePoint interior = copy.interior(PatchId(0));
+    copy.setInterior(PatchId(0), interior + LatticePoint{1, 0});
+    copy.setInterior(PatchId(0), interior);
+    EXPECT_EQ(edgeBlurOf(copy), first);
+    EXPECT_NE(edgeBlurOf(copy, 2), first) << "another sharpen";
+    EXPECT_NE(edgeBlurOf(mesh), nullptr);
+    EXPECT_TRUE(edgeBlurOf(PatchMesh())->features().empty());
+}
+
+// Whatever is edited, the picture is that of a mesh that has never been drawn before.
+TEST(EdgeBlurCache, FollowsEveryEditOfTheGeometry) {
+    const PatchMesh start = bentCut(2);
+    const HalfedgeId cut = start.connectivity().find(VertexId(1), VertexId(4));
+    const EdgeId e = HalfedgeMesh::edge(cut);
+    const auto withCurve = [&](auto&& change) {
+        return [e, change](PatchMesh& mesh) {
+            EdgeCurve curve = mesh.curve(e);
+            change(curve);
+            mesh.setCurve(e, curve);
+        };
+    };
+    const std::function<void(PatchMesh&)> edits[] = {
+        [](PatchMesh& mesh) {
+            mesh.setPosition(VertexId(1), mesh.position(VertexId(1)) + LatticePoint{700, 0});
+        },
+        [cut](PatchMesh& mesh) { mesh.setInnerControlPoints(cut, toLattice({22, 8}), toLattice({18, 21})); },
+        withCurve([](EdgeCurve& curve) { curve.blurSigma[0] = 1; }),
+        withCurve([](EdgeCurve& curve) { curve.blurSigma = {0, 0}; }),
+        withCurve([](EdgeCurve& curve) { curve.feature = false; }),
+        [](PatchMesh& mesh) {
+            HalfedgeMesh c = mesh.connectivity();
+            for (const auto& [a, b] : {std::pair(0u, 4u), {3u, 1u}, {1u, 5u}, {4u, 2u}}) {
+                const HalfedgeId h = c.find(VertexId(a), VertexId(b));
+                if (!h.valid() || !c.canFlip(HalfedgeMesh::edge(h))) continue;
+                c.flip(HalfedgeMesh::edge(h));
+                mesh.setConnectivity(c);
+                const auto inner =
+                    straightControlPoints(mesh.position(c.origin(h)), mesh.position(c.target(h)));
+                mesh.setInnerControlPoints(h, inner[0], inner[1]);
+                return;
+            }
+            FAIL() << "no diagonal to flip";
+        }};
+    const Image before = render(start, 3);
+    for (size_t i = 0; i < std::size(edits); ++i) {
+        PatchMesh mesh = start;
+        edits[i](mesh);
+        const Image after = render(mesh, 3);
+        EXPECT_FALSE(sameBytes(after, before)) << i;
+        EXPECT_TRUE(sameBytes(after, render(rebuilt(mesh), 3))) << i;
+        EXPECT_TRUE(sameBytes(render(start, 3), before)) << i << ", undone";
+    }
 }
 
 TEST(EdgeBlur, TwoChainsGiveTwoTerms) {

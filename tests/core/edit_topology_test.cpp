@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 #include "core/edit/drag_colour.h"
 #include "core/export/rasterize.h"
+#include "tests/support/colour_change.h"
 #include "tests/support/edit_meshes.h"
 #include "tests/support/test_meshes.h"
 
@@ -19,6 +22,7 @@ using testing::curvedMesh;
 using testing::expectValid;
 using testing::gridMesh;
 using ::testing::HasSubstr;
+using testing::meanColourChange;
 using testing::sameMesh;
 using testing::sceneMesh;
 
@@ -188,6 +192,51 @@ TEST(MergeEdge, KeepsTheOutlineAndRefusesFolds) {
     expectValid(mesh);
 }
 
+// The median over many merges: what was there is seen on the new patches.
+TEST(MergeEdge, IsHardlySeen) {
+    std::vector<double> changes;
+    for (uint32_t e = 0; e < scene().connectivity().edgeCapacity(); e += 3) {
+        PatchMesh mesh = scene();
+        const auto touched = mergeEdge(mesh, EdgeId(e));
+        if (touched) changes.push_back(meanColourChange(scene(), mesh, touched->patches));
+    }
+    ASSERT_GT(changes.size(), 30U);
+    std::sort(changes.begin(), changes.end());
+    const double median = changes[changes.size() / 2], high = changes[changes.size() * 9 / 10];
+    std::printf("change by a merge in levels: median %.3f, nine in ten below %.3f\n", median, high);
+    EXPECT_LT(median, 1);
+    EXPECT_LT(high, 4);
+}
+
+TEST(MergeEdge, DoesNotBringColoursAcrossAFeature) {
+    // Two colours with a feature between them in the middle of a grid: a merge on one side stays on it.
+    PatchMesh mesh = gridMesh(60, 60, 6, 6);
+    const HalfedgeMesh& c = mesh.connectivity();
+    for (uint32_t j = 0; j < 6; ++j) {
+        const EdgeId e = HalfedgeMesh::edge(c.find(VertexId(7 * j + 3), VertexId(7 * j + 10)));
+        EdgeCurve curve = mesh.curve(e);
+        curve.feature = true;
+        mesh.setCurve(e, curve);
+    }
+    mesh.forEachPatch([&](PatchId p) {
+        const float value = controlBounds(mesh, p).max.x <= 30 ? .2F : .8F;
+        mesh.setSpline(p, constantSpline(std::array{value, value, value}));
+    });
+    // From beside the feature onto it.
+    const EdgeId e = HalfedgeMesh::edge(c.find(VertexId(7 * 3 + 2), VertexId(7 * 3 + 3)));
+    const PatchMesh before = mesh;
+    const auto touched = mergeEdge(mesh, e);
+    ASSERT_TRUE(touched) << touched.error().message;
+    EXPECT_LT(meanColourChange(before, mesh, touched->patches), .01);
+}
+
+TEST(MeanColourChange, SeesAPaintedPatch) {
+    PatchMesh mesh = scene();
+    EXPECT_EQ(meanColourChange(scene(), mesh, {PatchId(5)}), 0);
+    mesh.setSpline(PatchId(5), constantSpline(std::array{1.F, 0.F, 0.F}));
+    EXPECT_GT(meanColourChange(scene(), mesh, {PatchId(5)}), 20);
+}
+
 TEST(MergeEdge, UndoesASplit) {
     PatchMesh mesh = scene();
     const auto split = splitPatch(mesh, PatchId(50), Barycentric(1.0 / 3));
@@ -196,6 +245,7 @@ TEST(MergeEdge, UndoesASplit) {
     ASSERT_TRUE(merged) << merged.error().message;
     EXPECT_EQ(mesh.patchCount(), scene().patchCount());
     expectValid(mesh);
+    EXPECT_LT(meanColourChange(scene(), mesh, merged->patches), 1);
 }
 
 TEST(CarriedOver, FollowsSplitsAndMerges) {

@@ -29,6 +29,21 @@ TEST(PagedArray, ConstructsFilled) {
     for (size_t i = 0; i < 6; ++i) EXPECT_EQ(array[i], 7);
 }
 
+TEST(PagedArray, EqualsByValue) {
+    Small array = counting(9);
+    const Small snapshot = array;
+    EXPECT_TRUE(array == snapshot);
+    EXPECT_TRUE(array == counting(9)) << "no page is shared";
+    EXPECT_FALSE(array == counting(8));
+    array.edit(8) = 7;
+    EXPECT_FALSE(array == snapshot);
+    array.edit(8) = 8;
+    EXPECT_TRUE(array == snapshot);
+    // What lies in the last page beyond the end does not count.
+    array.resize(5);
+    EXPECT_TRUE(array == counting(5));
+}
+
 TEST(PagedArray, SnapshotDoesNotSeeEdits) {
     Small array = counting(9);
     const Small snapshot = array;

@@ -156,8 +156,8 @@ TEST_F(GpuLayout, View) {
             "put(view.origin); put(view.fraction); put(view.gridPerUnit); put(view.gridSize);"
             "put(view.target); put(view.edgeTolerance); put(view.insideTolerance); put(view.patchCount);"
             "put(view.edgeCount); put(view.opponent); put(view.channels); put(view.pieceCapacity);"
-            "put(view.drawVertices); put(view.drawCount); put(view.sharpen); put(view.showHidden);"),
-        {words.begin(), words.begin() + 21});
+            "put(view.drawVertices); put(view.drawCount); put(view.showHidden);"),
+        {words.begin(), words.begin() + 20});
 }
 
 TEST_F(GpuLayout, FlagsAreTheSameInBothLanguages) {
