@@ -104,7 +104,7 @@ void ToolOptionsBar::makeColourPages() {
     addNumber(gradient, tr("Strength"), tr("How much of the gradient replaces the colours"), tr(" %"), 0, 100,
               kPercent, [](ToolOptions& o) -> double& { return o.gradientStrength; });
     addNumber(gradient, tr("Feather"),
-              tr("How far inside the selection's border it fades in; features stay sharp"), tr(" px"), 0, 500,
+              tr("How far to either side of the selection's border it fades; features stay sharp"), tr(" px"), 0, 500,
               1, feather);
 }
 

@@ -1,6 +1,7 @@
 // See colour_field.h.
 #include "ui/panels/colour_field.h"
 
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QLineEdit>
 #include <QRegularExpressionValidator>
@@ -63,7 +64,12 @@ bool ColourField::editing() const {
 void ColourField::show(glm::dvec3 srgb) {
     mColour = srgb;
     mSwatch->setColour(toQColor(srgb));
-    mHex->setText(hexText(srgb));
+    mHex->setText(isEnabled() ? hexText(srgb) : QString());
+}
+
+void ColourField::changeEvent(QEvent* event) {
+    if (event->type() == QEvent::EnabledChange) show(mColour);
+    QWidget::changeEvent(event);
 }
 
 void ColourField::enterHex() {

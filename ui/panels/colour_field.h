@@ -11,7 +11,7 @@ namespace tessera {
 class ColourPopup;
 class SwatchButton;
 
-// Gamma-encoded sRGB, 0..1.
+// Gamma-encoded sRGB, 0..1. Disabled, it is empty: there is nothing whose colour it could be.
 class ColourField : public QWidget {
     Q_OBJECT
 
@@ -31,6 +31,9 @@ class ColourField : public QWidget {
     void previewed(glm::dvec3 srgb);
     void chosen(glm::dvec3 srgb);
     void abandoned();  // colour() is the one from before
+
+  protected:
+    void changeEvent(QEvent* event) override;
 
   private:
     void show(glm::dvec3 srgb);

@@ -131,7 +131,7 @@ QWidget* RecolourPanel::makeSliders() {
     mFeather->setObjectName("feather");
     mFeather->setAccessibleName(tr("Feather"));
     mFeather->setToolTip(
-        tr("How far inside the selection's border recolourings fade in; at features they stay sharp"));
+        tr("How far to either side of the selection's border recolourings fade; at features they stay sharp"));
     mFeather->setRange(0, kMostFeatherPx);
     mFeather->setDecimals(1);
     mFeather->setSuffix(tr(" px"));
