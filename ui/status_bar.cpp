@@ -131,7 +131,7 @@ void StatusBar::showSelection(size_t patches) {
 }
 
 void StatusBar::showZoom(std::optional<double> scale) {
-    mZoom->setEnabled(scale.has_value());
+    mZoom->setVisible(scale.has_value());
     mZoom->setText(scale ? zoomText(*scale) : QString());
 }
 

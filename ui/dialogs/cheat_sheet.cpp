@@ -99,10 +99,8 @@ QLabel* keyLabel(const QString& keys) {
 
 QWidget* columnOf(const QList<Group>& groups) {
     auto* column = new QWidget;
-    auto* grid = new QGridLayout(column);
-    grid->setContentsMargins(0, 0, 0, 0);
+    auto* grid = partGrid(column);
     grid->setHorizontalSpacing(12);
-    grid->setVerticalSpacing(6);
     grid->setColumnStretch(1, 1);
     int line = 0;
     for (const Group& group : groups) {

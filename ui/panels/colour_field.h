@@ -4,11 +4,10 @@
 #include <QWidget>
 #include <glm/vec3.hpp>
 
-class QLineEdit;
-
 namespace tessera {
 
 class ColourPopup;
+class HexField;
 class SwatchButton;
 
 // Gamma-encoded sRGB, 0..1. Disabled, it is empty: there is nothing whose colour it could be.
@@ -32,16 +31,12 @@ class ColourField : public QWidget {
     void chosen(glm::dvec3 srgb);
     void abandoned();  // colour() is the one from before
 
-  protected:
-    void changeEvent(QEvent* event) override;
-
   private:
     void show(glm::dvec3 srgb);
-    void enterHex();
 
     glm::dvec3 mColour{0};
     SwatchButton* mSwatch;
-    QLineEdit* mHex;
+    HexField* mHex;
     ColourPopup* mPopup;
 };
 
