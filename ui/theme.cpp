@@ -135,8 +135,9 @@ class QuietStyle : public QProxyStyle {
   private:
     static void drawFieldFrame(QPainter* painter, const QStyleOption& option, QPalette::ColorRole ground) {
         const bool enabled = option.state.testFlag(State_Enabled);
-        const bool marked = enabled && (option.state.testFlag(State_HasFocus) ||
-                                        (ground == QPalette::Button && option.state.testFlag(State_MouseOver)));
+        const bool marked =
+            enabled && (option.state.testFlag(State_HasFocus) ||
+                        (ground == QPalette::Button && option.state.testFlag(State_MouseOver)));
         painter->save();
         painter->setRenderHint(QPainter::Antialiasing);
         painter->setPen(option.palette.color(marked ? QPalette::Highlight : QPalette::Dark));
@@ -154,8 +155,9 @@ class QuietStyle : public QProxyStyle {
         const double back = -2 * down * kHalfHeightPx;
         painter->save();
         painter->setRenderHint(QPainter::Antialiasing);
-        painter->setPen(QPen(option.palette.color(enabled ? QPalette::Text : QPalette::Mid), 1.3, Qt::SolidLine,
-                             Qt::RoundCap, Qt::RoundJoin));
+        QColor ink = option.palette.color(QPalette::Text);
+        if (!enabled) ink.setAlphaF(.3f);
+        painter->setPen(QPen(ink, 1.3, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
         painter->drawPolyline(
             QPolygonF{tip + QPointF(-kHalfWidthPx, back), tip, tip + QPointF(kHalfWidthPx, back)});
         painter->restore();
