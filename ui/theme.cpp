@@ -43,6 +43,8 @@ QPalette paletteOf(const Greys& g) {
     palette.setColor(QPalette::Shadow, g.line.darker(140));
     for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
         palette.setColor(QPalette::Disabled, role, g.dim);
+    for (const auto role : {QPalette::Base, QPalette::Button})
+        palette.setColor(QPalette::Disabled, role, g.window);
     palette.setColor(QPalette::Disabled, QPalette::Highlight, g.button);
     return palette;
 }
@@ -141,7 +143,7 @@ class QuietStyle : public QProxyStyle {
         painter->save();
         painter->setRenderHint(QPainter::Antialiasing);
         painter->setPen(option.palette.color(marked ? QPalette::Highlight : QPalette::Dark));
-        painter->setBrush(option.palette.brush(enabled ? ground : QPalette::Window));
+        painter->setBrush(option.palette.brush(ground));
         painter->drawRoundedRect(QRectF(option.rect).adjusted(.5, .5, -.5, -.5), kFieldCornerPx,
                                  kFieldCornerPx);
         painter->restore();
