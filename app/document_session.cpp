@@ -26,7 +26,14 @@ int DocumentSession::height() const {
 }
 
 bool DocumentSession::hasAlpha() const {
-    return hasMesh() ? mDocument.mesh.channels() == 4 : mPhoto.image && mPhoto.image->hasAlpha();
+    if (!hasMesh()) return mPhoto.image && mPhoto.image->hasAlpha();
+    const PatchMesh& mesh = mDocument.mesh;
+    bool leftOut = false;
+    mesh.forEachPatch([&](PatchId p) {
+        const PatchAttributes& attributes = mesh.attributes(p);
+        leftOut = leftOut || attributes.hidden || attributes.cutOut;
+    });
+    return leftOut || mesh.channels() == 4;
 }
 
 QString DocumentSession::displayName() const {

@@ -12,22 +12,27 @@ DraftPreview::DraftPreview(Workspace& workspace, QObject* parent) : QObject(pare
 
 void DraftPreview::setSession(DocumentSession* session) {
     drop();
-    if (mSession) mSession->disconnect(this);
     mSession = session;
-    mLadder.reset();
-    mBuilding = false;
-    if (!session) return;
-    connect(session, &DocumentSession::changed, this, [this](const Change& change) {
-        if (change.photo) mLadder.reset();
-        if (change.mesh() || change.photo) drop();
-    });
+}
+
+DraftPreview::Drafts& DraftPreview::draftsOf(DocumentSession& session) {
+    const auto [found, isNew] = mDrafts.try_emplace(&session);
+    if (isNew) {
+        connect(&session, &QObject::destroyed, this, [this](QObject* gone) { mDrafts.erase(gone); });
+        connect(&session, &DocumentSession::changed, this, [this, &session](const Change& change) {
+            if (change.photo) draftsOf(session).ladder.reset();
+            if (&session == mSession && (change.mesh() || change.photo)) drop();
+        });
+    }
+    return found->second;
 }
 
 void DraftPreview::want(const VectorizeSettings& settings) {
     if (!mSession || !mSession->photo().image || settings.method != "default") return;
     mWish = settings;
     mWishDrawn = false;
-    if (!ladderServes()) build();
+    Drafts& drafts = draftsOf(*mSession);
+    if (!serves(drafts)) build(drafts);
     drawNext();
 }
 
@@ -41,32 +46,38 @@ void DraftPreview::forgetWish() {
     delete mRung;
 }
 
-bool DraftPreview::ladderServes() const {
+bool DraftPreview::serves(const Drafts& drafts) const {
     // A small picture's ladder may end below what it was built for: a new one would not be longer.
-    return mLadder && mLadderSettings.featureBudget == mWish->featureBudget &&
-           std::max(mLadder->mostPatches(), size_t(mLadderSettings.patches)) >= size_t(mWish->patches);
+    return drafts.ladder && drafts.settings.featureBudget == mWish->featureBudget &&
+           std::max(drafts.ladder->mostPatches(), size_t(drafts.settings.patches)) >= size_t(mWish->patches);
 }
 
-void DraftPreview::build() {
-    if (mBuilding) return;
-    mBuilding = true;
+void DraftPreview::build(Drafts& drafts) {
+    if (std::exchange(drafts.building, true)) return;
     const QPointer<DocumentSession> session = mSession;
     const VectorizeSettings settings = *mWish;
-    mWorkspace.buildDrafts(settings, [this, session, settings](std::shared_ptr<const DraftLadder> ladder) {
-        if (!session || session != mSession) return;
-        mBuilding = false;
-        if (!ladder) return forgetWish();
-        mLadder = std::move(ladder);
-        mLadderSettings = settings;
+    const auto photo = mSession->photo().image;
+    mWorkspace.buildDrafts(settings, [this, session, settings, photo](auto ladder) {
+        if (!session) return;
+        Drafts& built = draftsOf(*session);
+        built.building = false;
+        const bool shown = session == mSession;
+        if (!ladder && shown) return forgetWish();
+        if (session->photo().image == photo) {
+            built.ladder = std::move(ladder);
+            built.settings = settings;
+        }
         // The slider may have gone on meanwhile.
-        if (mWish) want(VectorizeSettings(*mWish));
+        if (shown && mWish) want(VectorizeSettings(*mWish));
     });
 }
 
 void DraftPreview::drawNext() {
-    if (mRung || !mWish || !mLadder || mWishDrawn) return;
+    if (mRung || !mWish || mWishDrawn) return;
+    const Drafts& drafts = draftsOf(*mSession);
+    if (!drafts.ladder) return;
     mWishDrawn = true;
-    mRung = startRungJob(this, mLadder, size_t(mWish->patches), [this](Result<PatchMesh> mesh) {
+    mRung = startRungJob(this, drafts.ladder, size_t(mWish->patches), [this](Result<PatchMesh> mesh) {
         mRung.clear();
         if (!mesh) return forgetWish();
         mMesh = std::move(*mesh);

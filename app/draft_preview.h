@@ -3,6 +3,7 @@
 
 #include <QObject>
 #include <QPointer>
+#include <map>
 #include <optional>
 
 #include "app/workspace.h"
@@ -10,9 +11,9 @@
 
 namespace tessera {
 
-// The first wish has a ladder of drafts built, which takes about as long as a draft; from then on a draft is
-// there within a frame or two. The newest wish wins. Nothing of it becomes part of the document; a change of
-// the document's mesh ends it.
+// A session's first wish has a ladder of drafts built, which takes about as long as a draft; from then on a
+// draft is there within a frame or two, until the session closes or gets another photo. The newest wish wins.
+// Nothing of it becomes part of the document; a change of the document's mesh ends it.
 class DraftPreview : public QObject {
     Q_OBJECT
 
@@ -35,8 +36,15 @@ class DraftPreview : public QObject {
     void changed();
 
   private:
-    bool ladderServes() const;
-    void build();
+    struct Drafts {
+        std::shared_ptr<const DraftLadder> ladder;
+        VectorizeSettings settings;  // that it was built with
+        bool building = false;
+    };
+
+    Drafts& draftsOf(DocumentSession& session);
+    bool serves(const Drafts& drafts) const;
+    void build(Drafts& drafts);
     void drawNext();
     void forgetWish();
 
@@ -45,9 +53,7 @@ class DraftPreview : public QObject {
     std::optional<VectorizeSettings> mWish;
     bool mWishDrawn = false;
     std::optional<PatchMesh> mMesh;
-    std::shared_ptr<const DraftLadder> mLadder;
-    VectorizeSettings mLadderSettings;  // that it was built with
-    bool mBuilding = false;
+    std::map<const QObject*, Drafts> mDrafts;  // by session
     QPointer<Job> mRung;
 };
 

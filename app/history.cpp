@@ -44,6 +44,7 @@ uint64_t History::revision(int state) const {
 }
 
 int History::savedIndex() const {
+    if (mSession.path().isEmpty()) return -1;  // a photo that was opened is no file of ours
     for (int state = 0; state <= count(); ++state)
         if (revision(state) == mSession.savedRevision()) return state;
     return -1;

@@ -34,7 +34,7 @@ class History : public QObject {
     void goTo(int state);
 
     uint64_t revision(int state) const;
-    // The state that is in the file; -1 where it is not among those kept.
+    // The state that is in the file; -1 where it is not among those kept, and where there is no file yet.
     int savedIndex() const;
     // Whether older steps than those kept have been forgotten.
     bool forgot() const { return mForgot; }

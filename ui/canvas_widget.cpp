@@ -147,8 +147,9 @@ void CanvasWidget::measureFeatures() {
 }
 
 void CanvasWidget::outlineSelection() {
+    // Of the document: where patches come or go, the selection knows them before mMesh does.
     mSelectionOutline = mSession && mSession->hasMesh() && !mDrafting
-                            ? outlineEdges(mMesh, mSession->selection().patches())
+                            ? outlineEdges(mSession->document().mesh, mSession->selection().patches())
                             : std::vector<EdgeId>();
     update();
 }

@@ -347,13 +347,14 @@ void MainWindow::updateOverlays() {
                              : a[ActionId::ShowImportance]->isChecked() ? FeatureTint::Importance
                                                                         : FeatureTint::Plain;
     // What can be taken hold of is seen.
-    const bool shaping = mTools.tool() == ToolId::Direct;
-    mCanvas->setOverlays({.features = tint != FeatureTint::Plain || a[ActionId::ShowFeatures]->isChecked(),
-                          .tint = tint,
-                          .edges = shaping || a[ActionId::ShowEdges]->isChecked(),
-                          .vertices = shaping,
-                          .controlPoints = a[ActionId::ShowControlPoints]->isChecked(),
-                          .centres = a[ActionId::ShowCentres]->isChecked()});
+    const bool shaping = mTools.tool() == ToolId::Direct, softening = mTools.tool() == ToolId::Blur;
+    mCanvas->setOverlays(
+        {.features = softening || tint != FeatureTint::Plain || a[ActionId::ShowFeatures]->isChecked(),
+         .tint = tint,
+         .edges = shaping || a[ActionId::ShowEdges]->isChecked(),
+         .vertices = shaping,
+         .controlPoints = a[ActionId::ShowControlPoints]->isChecked(),
+         .centres = a[ActionId::ShowCentres]->isChecked()});
 }
 
 void MainWindow::cycleOutlineView() {

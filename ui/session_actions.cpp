@@ -17,6 +17,13 @@ enum Needs : unsigned {
     kPatches = 1,  // selected ones
     kCurves = 2,   // selected ones
     kPhoto = 4,
+    // Something to do it to.
+    kHidden = 8,
+    kLocked = 16,
+    kCutOut = 32,    // among the selected patches
+    kOpaque = 64,    // among the selected patches
+    kPlain = 128,    // among the selected curves
+    kFeature = 256,  // among the selected curves
 };
 
 struct SessionAction {
@@ -67,24 +74,34 @@ const std::array kSessionActions{
     SessionAction{ActionId::ResetShape, kPatches, perhaps<resetShape>},
     SessionAction{ActionId::RefitColours, kPatches | kPhoto, perhaps<refitColours>},
     SessionAction{ActionId::Hide, kPatches, flag<PatchFlag::Hidden, true>},
-    SessionAction{ActionId::ShowAll, kMesh, clear<PatchFlag::Hidden>},
+    SessionAction{ActionId::ShowAll, kHidden, clear<PatchFlag::Hidden>},
     SessionAction{ActionId::Lock, kPatches, flag<PatchFlag::Locked, true>},
-    SessionAction{ActionId::UnlockAll, kMesh, clear<PatchFlag::Locked>},
-    SessionAction{ActionId::CutOut, kPatches, flag<PatchFlag::CutOut, true>},
-    SessionAction{ActionId::FillIn, kPatches, flag<PatchFlag::CutOut, false>},
+    SessionAction{ActionId::UnlockAll, kLocked, clear<PatchFlag::Locked>},
+    SessionAction{ActionId::CutOut, kOpaque, flag<PatchFlag::CutOut, true>},
+    SessionAction{ActionId::FillIn, kCutOut, flag<PatchFlag::CutOut, false>},
     SessionAction{ActionId::SplitPatches, kPatches, perhaps<splitPatches>},
     SessionAction{ActionId::SplitCurves, kCurves, perhaps<splitCurves>},
     SessionAction{ActionId::MergeCurves, kCurves, perhaps<mergeCurves>},
     SessionAction{ActionId::SnapToFeature, kCurves | kPhoto, perhaps<snapToFeature>},
-    SessionAction{ActionId::MarkFeature, kCurves, feature<true>},
-    SessionAction{ActionId::UnmarkFeature, kCurves, feature<false>},
+    SessionAction{ActionId::MarkFeature, kPlain, feature<true>},
+    SessionAction{ActionId::UnmarkFeature, kFeature, feature<false>},
 };
 
-bool holds(unsigned needs, const DocumentSession& session) {
+// All that actions could need and that is there.
+unsigned offered(const DocumentSession& session) {
+    const PatchMesh& mesh = session.document().mesh;
     const Selection& selection = session.selection();
-    return (!(needs & kPatches) || !selection.patches().empty()) &&
-           (!(needs & kCurves) || !selection.curves().empty()) &&
-           (!(needs & kPhoto) || session.photo().image);
+    unsigned found = session.photo().image ? unsigned{kPhoto} : 0;
+    if (!selection.patches().empty()) found |= kPatches;
+    if (!selection.curves().empty()) found |= kCurves;
+    mesh.forEachPatch([&](PatchId p) {
+        const PatchAttributes& attributes = mesh.attributes(p);
+        if (attributes.hidden) found |= kHidden;
+        if (attributes.locked) found |= kLocked;
+    });
+    for (const PatchId p : selection.patches()) found |= mesh.attributes(p).cutOut ? kCutOut : kOpaque;
+    for (const EdgeId e : selection.curves()) found |= mesh.curve(e).feature ? kFeature : kPlain;
+    return found;
 }
 
 }  // namespace
@@ -103,8 +120,9 @@ void connectSessionActions(const ActionTable& actions, QObject* receiver,
 
 void enableSessionActions(const ActionTable& actions, const DocumentSession* session) {
     const bool hasMesh = session && session->hasMesh();
+    const unsigned found = hasMesh ? offered(*session) : 0;
     for (const SessionAction& action : kSessionActions)
-        actions[action.id]->setEnabled(hasMesh && holds(action.needs, *session));
+        actions[action.id]->setEnabled(hasMesh && (action.needs & ~found) == 0);
 }
 
 }  // namespace tessera

@@ -96,11 +96,15 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     mZoom->setMinimumWidth(mZoom->fontMetrics().horizontalAdvance("100,000 %") + 24);
     mZoom->setToolTip(tr("Zoom to 100 %"));
     connect(mZoom, &QPushButton::clicked, this, &StatusBar::zoomClicked);
+    // In one widget: QStatusBar makes itself a new layout, with its own distances, whenever it likes.
+    auto* figures = new QWidget;
+    auto* row = new QHBoxLayout(figures);
+    row->setContentsMargins(0, 0, 8, 0);
+    row->setSpacing(12);
     for (QWidget* widget :
          std::initializer_list<QWidget*>{mSelected, mCounts, mCursor, mSwatch, mColour, mRenderer, mZoom})
-        addPermanentWidget(widget);
-    layout()->setSpacing(12);
-    layout()->setContentsMargins(0, 0, 8, 0);
+        row->addWidget(widget);
+    addPermanentWidget(figures);
 }
 
 void StatusBar::showJob(const Job* job) {
@@ -131,7 +135,7 @@ void StatusBar::showSelection(size_t patches) {
 }
 
 void StatusBar::showZoom(std::optional<double> scale) {
-    mZoom->setEnabled(scale.has_value());
+    mZoom->setVisible(scale.has_value());
     mZoom->setText(scale ? zoomText(*scale) : QString());
 }
 

@@ -43,6 +43,8 @@ QPalette paletteOf(const Greys& g) {
     palette.setColor(QPalette::Shadow, g.line.darker(140));
     for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
         palette.setColor(QPalette::Disabled, role, g.dim);
+    for (const auto role : {QPalette::Base, QPalette::Button})
+        palette.setColor(QPalette::Disabled, role, g.window);
     palette.setColor(QPalette::Disabled, QPalette::Highlight, g.button);
     return palette;
 }
@@ -83,11 +85,31 @@ const char* const kSheet = R"(
     QFrame[role="line"] { background: %1; border: none; max-height: 1px; min-height: 1px; }
 )";
 
-// Fusion without the shadows under disabled text, without pictures in dialogs' buttons, and with crosses in
-// the theme's colours to close tabs by.
+// Fusion without the shadows under disabled text, without pictures in dialogs' buttons and without gradients
+// on the fields that open or count, and with crosses in the theme's colours to close tabs by.
 class QuietStyle : public QProxyStyle {
   public:
     QuietStyle() : QProxyStyle("Fusion") {}
+
+    void drawComplexControl(ComplexControl control, const QStyleOptionComplex* option, QPainter* painter,
+                            const QWidget* widget) const override {
+        const auto* combo = qstyleoption_cast<const QStyleOptionComboBox*>(option);
+        const auto* spin = qstyleoption_cast<const QStyleOptionSpinBox*>(option);
+        if (control == CC_ComboBox && combo && !combo->editable) {
+            drawFieldFrame(painter, *option, QPalette::Button);
+            drawChevron(painter, *option, subControlRect(control, option, SC_ComboBoxArrow, widget), 1,
+                        option->state.testFlag(State_Enabled));
+        } else if (control == CC_SpinBox && spin) {
+            drawFieldFrame(painter, *option, QPalette::Base);
+            if (spin->buttonSymbols == QAbstractSpinBox::NoButtons) return;
+            drawChevron(painter, *option, subControlRect(control, option, SC_SpinBoxUp, widget), -1,
+                        spin->stepEnabled.testFlag(QAbstractSpinBox::StepUpEnabled));
+            drawChevron(painter, *option, subControlRect(control, option, SC_SpinBoxDown, widget), 1,
+                        spin->stepEnabled.testFlag(QAbstractSpinBox::StepDownEnabled));
+        } else {
+            QProxyStyle::drawComplexControl(control, option, painter, widget);
+        }
+    }
 
     int styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget,
                   QStyleHintReturn* data) const override {
@@ -111,6 +133,39 @@ class QuietStyle : public QProxyStyle {
             painter->drawLine(centre + kReachPx * QPointF(-1, side), centre + kReachPx * QPointF(1, -side));
         painter->restore();
     }
+
+  private:
+    static void drawFieldFrame(QPainter* painter, const QStyleOption& option, QPalette::ColorRole ground) {
+        const bool enabled = option.state.testFlag(State_Enabled);
+        const bool marked =
+            enabled && (option.state.testFlag(State_HasFocus) ||
+                        (ground == QPalette::Button && option.state.testFlag(State_MouseOver)));
+        painter->save();
+        painter->setRenderHint(QPainter::Antialiasing);
+        painter->setPen(option.palette.color(marked ? QPalette::Highlight : QPalette::Dark));
+        painter->setBrush(option.palette.brush(ground));
+        painter->drawRoundedRect(QRectF(option.rect).adjusted(.5, .5, -.5, -.5), kFieldCornerPx,
+                                 kFieldCornerPx);
+        painter->restore();
+    }
+
+    // Down for 1, up for -1.
+    static void drawChevron(QPainter* painter, const QStyleOption& option, const QRect& rect, int down,
+                            bool enabled) {
+        constexpr double kHalfWidthPx = 3.5, kHalfHeightPx = 1.75;
+        const QPointF tip = QRectF(rect).center() + QPointF(0, down * kHalfHeightPx);
+        const double back = -2 * down * kHalfHeightPx;
+        painter->save();
+        painter->setRenderHint(QPainter::Antialiasing);
+        QColor ink = option.palette.color(QPalette::Text);
+        if (!enabled) ink.setAlphaF(.3f);
+        painter->setPen(QPen(ink, 1.3, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+        painter->drawPolyline(
+            QPolygonF{tip + QPointF(-kHalfWidthPx, back), tip, tip + QPointF(kHalfWidthPx, back)});
+        painter->restore();
+    }
+
+    static constexpr double kFieldCornerPx = 4;
 };
 
 }  // namespace

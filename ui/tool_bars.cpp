@@ -19,6 +19,7 @@ namespace tessera {
 namespace {
 
 constexpr int kIconPx = 22;
+constexpr int kHeadingGapPx = 10;  // beyond the usual space: the name is no label of the first field
 constexpr double kPercent = 100;
 
 }  // namespace
@@ -104,8 +105,8 @@ void ToolOptionsBar::makeColourPages() {
     addNumber(gradient, tr("Strength"), tr("How much of the gradient replaces the colours"), tr(" %"), 0, 100,
               kPercent, [](ToolOptions& o) -> double& { return o.gradientStrength; });
     addNumber(gradient, tr("Feather"),
-              tr("How far inside the selection's border it fades in; features stay sharp"), tr(" px"), 0, 500,
-              1, feather);
+              tr("How far to either side of the selection's border it fades; features stay sharp"), tr(" px"),
+              0, 500, 1, feather);
 }
 
 void ToolOptionsBar::makeShapePages() {
@@ -130,7 +131,9 @@ ToolOptionsBar::Page ToolOptionsBar::addPage(ToolId tool, const QString& name, c
     auto* row = new QHBoxLayout(widget);
     row->setContentsMargins(8, 2, 8, 2);
     row->setSpacing(8);
-    row->addWidget(headingLabel(name));
+    auto* heading = headingLabel(name);
+    heading->setContentsMargins(0, 0, kHeadingGapPx, 0);
+    row->addWidget(heading);
     row->addStretch(1);
     auto* text = dimLabel(hint);
     text->setWordWrap(false);

@@ -19,6 +19,7 @@
 #include "ui/action_table.h"
 #include "ui/amount_field.h"
 #include "ui/panels/gesture_slider.h"
+#include "ui/panels/panel_parts.h"
 #include "ui/status_bar.h"
 #include "ui/widget_parts.h"
 
@@ -63,8 +64,7 @@ double secondsOf(const VectorizeReport& report) {
 
 VectorizePanel::VectorizePanel(Settings& settings, const ActionTable& actions, QWidget* parent)
     : QWidget(parent), mSettings(settings) {
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(16, 12, 16, 16);
+    auto* column = panelColumn(this);
     column->setSpacing(16);
     column->addWidget(makeVectorizePart(actions));
     column->addWidget(separatorLine());

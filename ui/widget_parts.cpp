@@ -2,6 +2,7 @@
 #include "ui/widget_parts.h"
 
 #include <QFrame>
+#include <QGridLayout>
 #include <QLabel>
 #include <QVBoxLayout>
 
@@ -31,6 +32,13 @@ QVBoxLayout* partColumn(QWidget* part) {
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(8);
     return column;
+}
+
+QGridLayout* partGrid(QWidget* part) {
+    auto* grid = new QGridLayout(part);
+    grid->setContentsMargins(0, 0, 0, 0);
+    grid->setSpacing(6);
+    return grid;
 }
 
 }  // namespace tessera

@@ -4,6 +4,7 @@
 #include <QString>
 
 class QFrame;
+class QGridLayout;
 class QLabel;
 class QVBoxLayout;
 class QWidget;
@@ -15,7 +16,8 @@ QLabel* headingLabel(const QString& text);
 QLabel* dimLabel(const QString& text);
 // Across its column.
 QFrame* separatorLine();
-// The layout of a part that lies in another layout: without margins.
+// The layouts of a part that lies in another layout: without margins.
 QVBoxLayout* partColumn(QWidget* part);
+QGridLayout* partGrid(QWidget* part);
 
 }  // namespace tessera

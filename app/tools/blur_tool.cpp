@@ -91,7 +91,7 @@ void BlurTool::clicked(const ToolEvent&) {
 }
 
 void BlurTool::dragStarted(const ToolEvent&) {
-    if (!mHeld || !begin(mEdit, QObject::tr("Blur"))) return;
+    if (!mHeld || !begin(mEdit, QObject::tr("Soften"))) return;
     mEdges = options().wholeFeatures ? wholeFeature(mesh(), mHeld->edge) : std::vector{mHeld->edge};
 }
 

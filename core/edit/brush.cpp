@@ -33,7 +33,7 @@ Touched BrushStroke::draw(PatchMesh& mesh, std::span<const glm::dvec2> stroke) {
                                                              mOptions.strength * mOptions.colour};
         // What was under the stroke before and is again is painted from its start.
         const Repainter repainter(
-            mStart, editable(mStart, patchSet(std::move(under))), [&](glm::dvec2 point) {
+            mStart, editable(mStart, patchSet(std::move(under))), [&](PatchId, glm::dvec2 point) {
                 return 1 - smoothStep(full, mOptions.radiusPx, distance->distance(point));
             });
         mTouched = united(mTouched, repainter.apply(mPainted, repaint));

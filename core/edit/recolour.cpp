@@ -2,6 +2,7 @@
 #include "core/edit/recolour.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -83,37 +84,76 @@ std::vector<EdgeId> openBorder(const PatchMesh& mesh, const PatchSet& set) {
     return edges;
 }
 
-PaintWeight featherWeight(const PatchMesh& mesh, const std::vector<EdgeId>& border, double feather) {
-    auto distance = std::make_shared<const DistanceGrid>(segmentsOf(mesh, border), feather);
-    return
-        [distance, feather](glm::dvec2 point) { return smoothStep(0, feather, distance->distance(point)); };
+// A border that fades, and what it reaches.
+struct Feather {
+    PatchSet around;             // outside the set
+    std::vector<EdgeId> breaks;  // between what it reaches and locked patches
+    PaintWeight weight;
+};
+
+// Whether a curve comes nearer to the border than the feather is wide.
+bool withinFeather(const PatchMesh& mesh, EdgeId e, const DistanceGrid& distance, double feather) {
+    constexpr double kStepsPerFeather = 4, kMostSteps = 4096;
+    for (const auto& [from, to] : segmentsOf(mesh, std::array{e})) {
+        const double steps =
+            std::clamp(std::ceil(kStepsPerFeather * glm::distance(from, to) / feather), 1.0, kMostSteps);
+        for (int i = 0; i <= int(steps); ++i)
+            if (distance.distance(glm::mix(from, to, i / steps)) < feather) return true;
+    }
+    return false;
+}
+
+Feather featherOf(const PatchMesh& mesh, const PatchSet& set, const std::vector<EdgeId>& border,
+                  double featherPx) {
+    const HalfedgeMesh& c = mesh.connectivity();
+    const auto distance = std::make_shared<const DistanceGrid>(segmentsOf(mesh, border), featherPx);
+    auto inside = std::make_shared<const std::vector<uint8_t>>(membership(mesh, set));
+    auto reached = *inside;
+    Feather result;
+    const auto reach = [&](HalfedgeId from) {
+        const PatchId p = c.face(HalfedgeMesh::twin(from));
+        const EdgeId e = HalfedgeMesh::edge(from);
+        if (!p.valid() || reached[p.index] || mesh.curve(e).feature) return;
+        if (!withinFeather(mesh, e, *distance, featherPx)) return;
+        if (mesh.attributes(p).locked) return result.breaks.push_back(e);
+        reached[p.index] = 1;
+        result.around.push_back(p);
+    };
+    for (const PatchId p : set)
+        for (const HalfedgeId side : c.sides(p)) reach(side);
+    for (size_t i = 0; i < result.around.size(); ++i)
+        for (const HalfedgeId side : c.sides(PatchId(result.around[i]))) reach(side);
+    result.around = patchSet(std::move(result.around));
+    result.weight = [distance, inside, featherPx](PatchId patch, glm::dvec2 point) {
+        const double d = distance->distance(point);
+        return smoothStep(-featherPx, featherPx, (*inside)[patch.index] ? d : -d);
+    };
+    return result;
 }
 
 }  // namespace
 
 struct Recolourer::State {
-    PatchSet set;
-    std::vector<EdgeId> border;  // where a hard border breaks colours
-    glm::dvec3 mean;
+    std::vector<EdgeId> border;  // where colours break
+    glm::dvec3 mean;             // of the set
     Repainter repainter;
-
-    State(PatchMesh start, PatchSet patches, std::vector<EdgeId> open, const RecolourOptions& options)
-        : set(std::move(patches)),
-          border(std::move(open)),
-          mean(meanColour(start, set)),
-          repainter(start, set,
-                    options.featherPx > 0 && !border.empty() ? featherWeight(start, border, options.featherPx)
-                                                             : PaintWeight{}) {
-        if (options.featherPx > 0) border.clear();
-    }
 
     Touched apply(PatchMesh& mesh, const Recolouring& how, Precision precision) const;
 };
 
 Recolourer::Recolourer(PatchMesh start, PatchSet set, RecolourOptions options) {
     PatchSet patches = editable(start, set);
-    std::vector<EdgeId> open = openBorder(start, patches);
-    mState = std::make_unique<State>(std::move(start), std::move(patches), std::move(open), options);
+    std::vector<EdgeId> border = openBorder(start, patches);
+    const glm::dvec3 mean = meanColour(start, patches);
+    PaintWeight weight;
+    if (options.featherPx > 0 && !border.empty()) {
+        Feather feather = featherOf(start, patches, border, options.featherPx);
+        patches = united(patches, feather.around);
+        border = std::move(feather.breaks);
+        weight = std::move(feather.weight);
+    }
+    mState = std::make_unique<State>(
+        State{std::move(border), mean, Repainter(std::move(start), std::move(patches), std::move(weight))});
 }
 Recolourer::~Recolourer() = default;
 Recolourer::Recolourer(Recolourer&&) noexcept = default;

@@ -55,13 +55,14 @@ struct PaletteShift {
 using Recolouring = std::variant<ColourShift, ReplaceColour, Tint, Levels, GradientRecolour, PaletteShift>;
 
 struct RecolourOptions {
-    // 0: a hard border. Else the edit fades in over this many px inside the set's border, features and the
-    // picture's border apart.
+    // 0: a hard border. Else the edit fades from this many px inside the set's border to as many outside,
+    // where it is half there at the border; not at features, nor at the picture's border. Locked patches stay:
+    // where one is that the fade would reach, colours break.
     double featherPx = 0;
 };
 
-// Changes the editable patches of the set. With a hard border, its edges that are no features become colour
-// breaks.
+// Changes the editable patches of the set, and with a soft border those around it. With a hard one, its edges
+// that are no features become colour breaks.
 Touched recolour(PatchMesh& mesh, const PatchSet& set, const Recolouring& how,
                  const RecolourOptions& options = {});
 

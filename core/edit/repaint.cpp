@@ -156,7 +156,7 @@ Repainter::Repainter(PatchMesh start, PatchSet patches, PaintWeight weight)
             if (!weight) continue;
             const BezierTriangle shape = toPixels(mStart.controlPoints(patch.id));
             for (const Barycentric& b : RefitPoints::all().barycentrics)
-                patch.weights.push_back(weight(evaluate(shape, b)));
+                patch.weights.push_back(weight(patch.id, evaluate(shape, b)));
             patch.even =
                 std::all_of(patch.weights.begin(), patch.weights.end(), [](double w) { return w >= 1; });
         }

@@ -33,8 +33,8 @@ struct Repaint {
     bool dependsOnPoint = false;
 };
 
-// How much of a repainting a place gets, 0..1; continuous. Thread-safe.
-using PaintWeight = std::function<double(glm::dvec2 point)>;
+// How much of a repainting a place of a patch gets, 0..1; continuous in the patch. Thread-safe.
+using PaintWeight = std::function<double(PatchId patch, glm::dvec2 point)>;
 
 // Quick: for a frame of a gesture. The change is made affine in colour, and in place linear between corners.
 enum class Precision { Full, Quick };

@@ -97,7 +97,7 @@ TEST_F(HistoryTest, ForgetsTheOldestStepsBeyondItsLimit) {
 }
 
 TEST_F(HistoryTest, KnowsWhichStateIsInTheFile) {
-    EXPECT_EQ(history.savedIndex(), 0);
+    EXPECT_EQ(history.savedIndex(), -1) << "it was never saved";
     paint(0, 0);
     paint(1, 0);
     session.markSaved(session.revision(), "/x.tessera", {});
@@ -121,7 +121,7 @@ TEST_F(HistoryTest, RowsForAPanel) {
     ASSERT_EQ(model.rowCount(), 3);
     EXPECT_EQ(at(2, Qt::DisplayRole), "Paint 1");
     history.goTo(1);
-    EXPECT_EQ(at(0, HistoryModel::SavedRole), true);
+    EXPECT_EQ(at(0, HistoryModel::SavedRole), false);
     EXPECT_EQ(at(1, HistoryModel::CurrentRole), true);
     EXPECT_EQ(at(1, HistoryModel::UndoneRole), false);
     EXPECT_EQ(at(2, HistoryModel::UndoneRole), true);

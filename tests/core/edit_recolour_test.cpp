@@ -50,6 +50,10 @@ std::vector<Barycentric> randomPoints(size_t count) {
     return points;
 }
 
+glm::dvec2 middleOf(const PatchMesh& mesh, PatchId p) {
+    return evaluate(toPixels(mesh.controlPoints(p)), Barycentric(1.0 / 3));
+}
+
 glm::dvec3 shown(glm::dvec3 colour) {
     return glm::clamp(colour, 0.0, 1.0);
 }
@@ -210,6 +214,59 @@ TEST(Recolour, AFeatheredBorderIsNone) {
     EXPECT_LE(after.p95, before.p95 + 3);
     // It is there inside.
     EXPECT_GT(deviationFrom(scene(), mesh, set, [](glm::dvec3 c) { return c; }).mean, 5);
+}
+
+// Cells of one grey, 10 px each; the left half is selected.
+TEST(Recolour, AFeatherFadesToBothSidesOfTheBorder) {
+    PatchMesh mesh = testing::gridMesh(200, 40, 20, 4);
+    mesh.forEachPatch([&](PatchId p) {
+        mesh.setSpline(p, constantSpline(std::array{.4f, .4f, .4f}));
+    });
+    PatchSet left;
+    mesh.forEachPatch([&](PatchId p) {
+        if (middleOf(mesh, p).x < 100) left.push_back(p);
+    });
+    constexpr double kFeather = 25;
+    recolour(mesh, left, Levels{.4, 0}, {kFeather});
+    testing::expectValid(mesh);
+    const auto image = rasterize(mesh, wholePicture(mesh, {1, 1}));
+    for (int x = 0; x < 200; ++x) {
+        const double t = std::clamp((kFeather + 100 - (x + .5)) / (2 * kFeather), 0., 1.);
+        EXPECT_NEAR(image->at(x, 20, 0), .4 + .4 * t * t * (3 - 2 * t), 2.5 / 255) << x;
+    }
+}
+
+TEST(Recolour, AFeatherEndsAtFeaturesAndLockedPatches) {
+    PatchMesh mesh = testing::gridMesh(200, 40, 20, 4);
+    PatchSet left, beyondFeature, locked;
+    mesh.forEachPatch([&](PatchId p) {
+        mesh.setSpline(p, constantSpline(std::array{.4f, .4f, .4f}));
+        const glm::dvec2 at = middleOf(mesh, p);
+        if (at.x < 100) left.push_back(p);
+        if (at.x > 110 && at.y < 20) beyondFeature.push_back(p);
+        if (at.x > 110 && at.y > 20) locked.push_back(p);
+    });
+    const auto beyond = membership(mesh, beyondFeature);
+    mesh.forEachEdge([&](EdgeId e) {
+        const HalfedgeId h = HalfedgeMesh::halfedge(e);
+        const PatchId a = mesh.connectivity().face(h), b = mesh.connectivity().face(HalfedgeMesh::twin(h));
+        if (!a.valid() || !b.valid() || beyond[a.index] == beyond[b.index]) return;
+        EdgeCurve curve = mesh.curve(e);
+        curve.feature = true;
+        mesh.setCurve(e, curve);
+    });
+    for (const PatchId p : locked) mesh.setAttributes(p, {.locked = true});
+    const PatchMesh before = mesh;
+    const Touched touched = recolour(mesh, left, Levels{.4, 0}, {30});
+    EXPECT_THAT(changedPatches(before, mesh), ElementsAreArray(touched.patches));
+    EXPECT_THAT(intersected(touched.patches, united(beyondFeature, locked)), IsEmpty());
+    EXPECT_GT(touched.patches.size(), left.size()) << "the column in between";
+    ASSERT_EQ(touched.edges.size(), 2u) << "where locked patches end the fade";
+    for (const EdgeId e : touched.edges) {
+        const HalfedgeId h = HalfedgeMesh::halfedge(e);
+        EXPECT_EQ(toPixels(mesh.position(mesh.connectivity().origin(h))).x, 110);
+        EXPECT_TRUE(mesh.curve(e).colourBreak);
+    }
 }
 
 TEST(Recolour, LockedPatchesStay) {

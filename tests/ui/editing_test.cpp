@@ -10,6 +10,7 @@
 #include "core/mesh/mesh_validate.h"
 #include "tests/ui/main_window_fixture.h"
 #include "ui/status_bar.h"
+#include "ui/theme.h"
 
 namespace tessera {
 namespace {
@@ -133,11 +134,31 @@ TEST_F(Editing, AHiddenPatchIsNotDrawnUntilAllAreShown) {
     ASSERT_EQ(session()->selection().patches().size(), 1u);
     key(Qt::Key_3, Qt::ControlModifier);
     ASSERT_TRUE(settled());
-    EXPECT_GT(difference(grab(), before), 0);
+    const QImage hidden = grab();
+    EXPECT_GT(difference(hidden, before), 0);
+    const CanvasColours colours = canvasColours(Settings().theme());
+    const QColor there = hidden.pixelColor(at(80, 60) * hidden.devicePixelRatio());
+    EXPECT_TRUE(there == colours.checkLight || there == colours.checkDark)
+        << there.name().toStdString() << ": one sees through a hidden patch";
     EXPECT_TRUE(session()->selection().patches().empty());
     key(Qt::Key_3, Qt::ControlModifier | Qt::AltModifier);
     ASSERT_TRUE(settled());
     EXPECT_EQ(difference(grab(), before), 0);
+}
+
+// New patches are in pages of memory that the mesh from before does not have: nobody may look for them there.
+TEST_F(Editing, ASelectionThatIsSplitGoesOnWithItsParts) {
+    constexpr size_t kPatchesOfAPage = 512;
+    for (uint32_t i = 0; mesh().patchCount() < kPatchesOfAPage + 20; ++i) {
+        ASSERT_LT(i, 4 * kPatchesOfAPage) << "too few could be split";
+        const PatchId p(i);
+        if (alive(mesh(), {p}).empty()) continue;
+        const size_t before = mesh().patchCount();
+        session()->selection().setPatches({p});
+        action(ActionId::SplitPatches)->trigger();
+        EXPECT_EQ(session()->selection().patches().size(), 1 + mesh().patchCount() - before);
+    }
+    ASSERT_TRUE(settled());
 }
 
 TEST_F(Editing, TheSelectionIsOutlinedAndFitsTheView) {

@@ -121,6 +121,42 @@ TEST_F(MainWindowTest, DraftsFollowTheSliderUntilOneIsApplied) {
     EXPECT_EQ(session()->revision(), revision);
 }
 
+// The ladder takes as long as a draft: once for a photo, however often one looks at others.
+TEST_F(MainWindowTest, DraftsOutliveALookAtAnotherTab) {
+    openPhoto();
+    vectorize();
+    auto* slider = window->panel().findChild<GestureSlider*>("amountSlider");
+    auto* button = window->panel().findChild<QPushButton*>("vectorizeButton");
+    int ladders = 0;
+    const Job* last = nullptr;
+    QObject::connect(&workspace(), &Workspace::jobChanged, window.get(), [&] {
+        const Job* job = workspace().currentJob();
+        if (job && job != last && job->kind() == JobKind::Drafts) ++ladders;
+        last = job;
+    });
+    const auto drafting = [&] { return button->text() == "Apply"; };
+    const auto drag = [&](double share) {
+        const QPoint to(int(slider->xOf(int(share * slider->maximum()))), slider->height() / 2);
+        QTest::mousePress(slider, Qt::LeftButton, {}, QPoint(int(slider->xOf(slider->value())), to.y()));
+        QTest::mouseMove(slider, to);
+        QTest::mouseRelease(slider, Qt::LeftButton, {}, to);
+        return QTest::qWaitFor([&] { return drafting() && !workspace().currentJob(); }, kWaitMs);
+    };
+    ASSERT_TRUE(drag(.4));
+    EXPECT_EQ(ladders, 1);
+    const QString second = folder.filePath("second.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    window->open(second);
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(drafting());
+    ASSERT_TRUE(drag(.3));
+    EXPECT_EQ(ladders, 2) << "another photo, other drafts";
+    QTest::mouseClick(&window->tabs(), Qt::LeftButton, {}, window->tabs().tabRect(0).center());
+    EXPECT_FALSE(drafting());
+    ASSERT_TRUE(drag(.2));
+    EXPECT_EQ(ladders, 2);
+}
+
 TEST_F(MainWindowTest, TheAmountCanBeADetailOrAnError) {
     openPhoto();
     auto* amount = window->panel().findChild<QComboBox*>("amount");

@@ -83,6 +83,16 @@ TEST_F(RecolourPanelTest, ADragIsOneStepThatUndoTakesBack) {
     EXPECT_NEAR(slider("hue")->value(), 90, 3);
 }
 
+TEST_F(RecolourPanelTest, WithoutASelectionThereIsNoColourOfIt) {
+    auto* hex = child<QWidget>(panel, "mean")->findChild<QLineEdit*>("hex");
+    select(column(0));
+    EXPECT_EQ(hex->text(), "#cc4d33");
+    select({});
+    EXPECT_EQ(hex->text(), "");
+    EXPECT_EQ(child<QWidget>(panel, "colour")->findChild<QLineEdit*>("hex")->text().size(), 7)
+        << "that of the tools is always there";
+}
+
 TEST_F(RecolourPanelTest, ASliderIsTakenUpAgain) {
     select(column(0));
     dragTo(slider("chroma"), -100);

@@ -5,6 +5,7 @@
 #include <QLabel>
 #include <QScreen>
 #include <QScrollArea>
+#include <QScrollBar>
 #include <QShortcut>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace tessera {
 
 namespace {
 
-constexpr int kColumns = 4;
+constexpr int kMostColumns = 4;
 constexpr int kHeadingRows = 2;  // a heading takes the room of so many lines
 
 struct Entry {
@@ -63,8 +64,8 @@ QList<Group> gestureGroups() {
               {tr("Shift"), tr("Keep to the axes and diagonals")},
               {tr("Alt"), tr("Break a smooth join")},
               {tr("Arrow keys"), tr("Nudge by an image pixel")},
-              {tr("Shift + arrow keys"), tr("Nudge by ten")},
-              {tr("Alt + arrow keys"), tr("Nudge by a screen pixel")},
+              {tr("Shift + arrows"), tr("Nudge by ten")},
+              {tr("Alt + arrows"), tr("Nudge by a screen pixel")},
               {tr("Escape"), tr("Give a drag up")}}}};
 }
 
@@ -99,10 +100,8 @@ QLabel* keyLabel(const QString& keys) {
 
 QWidget* columnOf(const QList<Group>& groups) {
     auto* column = new QWidget;
-    auto* grid = new QGridLayout(column);
-    grid->setContentsMargins(0, 0, 0, 0);
+    auto* grid = partGrid(column);
     grid->setHorizontalSpacing(12);
-    grid->setVerticalSpacing(6);
     grid->setColumnStretch(1, 1);
     int line = 0;
     for (const Group& group : groups) {
@@ -117,6 +116,15 @@ QWidget* columnOf(const QList<Group>& groups) {
     return column;
 }
 
+QWidget* sheetOf(const QList<Group>& groups, int columns) {
+    auto* sheet = new QWidget;
+    auto* across = new QHBoxLayout(sheet);
+    across->setContentsMargins(24, 20, 24, 20);
+    across->setSpacing(32);
+    for (const QList<Group>& column : inColumns(groups, columns)) across->addWidget(columnOf(column));
+    return sheet;
+}
+
 }  // namespace
 
 CheatSheet::CheatSheet(const QList<KeyRow>& rows, const QKeySequence& toggle, QWidget* parent)
@@ -125,20 +133,24 @@ CheatSheet::CheatSheet(const QList<KeyRow>& rows, const QKeySequence& toggle, QW
     setStyleSheet(
         "QLabel[role=\"key\"] { border: 1px solid palette(mid); border-radius: 4px; padding: 1px 6px;"
         " background: palette(base); }");
-    auto* sheet = new QWidget;
-    auto* across = new QHBoxLayout(sheet);
-    across->setContentsMargins(24, 20, 24, 20);
-    across->setSpacing(40);
-    for (const QList<Group>& groups : inColumns(keyGroups(rows) + gestureGroups(), kColumns))
-        across->addWidget(columnOf(groups));
     auto* area = new QScrollArea;
     area->setFrameShape(QFrame::NoFrame);
     area->setWidgetResizable(true);
-    area->setWidget(sheet);
+    area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(0, 0, 0, 0);
     column->addWidget(area);
-    resize((sheet->sizeHint() + QSize(4, 4)).boundedTo(screen()->availableSize() * .95));
+    // As many columns as the screen is wide enough for; one may scroll down.
+    const QList<Group> groups = keyGroups(rows) + gestureGroups();
+    const QSize room = screen()->availableSize() * .98;
+    const int scrollBar = area->verticalScrollBar()->sizeHint().width();
+    for (int columns = kMostColumns; columns > 0; --columns) {
+        area->setWidget(sheetOf(groups, columns));
+        ensurePolished();
+        if (area->widget()->sizeHint().width() + scrollBar <= room.width()) break;
+    }
+    const QSize sheet = area->widget()->sizeHint();
+    resize(QSize(sheet.width() + scrollBar, sheet.height()).boundedTo(room));
     if (!toggle.isEmpty())
         connect(new QShortcut(toggle, this), &QShortcut::activated, this, &QDialog::reject);
 }

@@ -2,36 +2,33 @@
 #include "ui/panels/colour_field.h"
 
 #include <QHBoxLayout>
-#include <QLineEdit>
-#include <QRegularExpressionValidator>
 #include <QToolButton>
 
 #include "ui/conversions.h"
 #include "ui/panels/colour_popup.h"
-#include "ui/panels/panel_parts.h"
+#include "ui/panels/hex_field.h"
 #include "ui/panels/swatch_button.h"
 
 namespace tessera {
 
 ColourField::ColourField(const QString& name, QWidget* parent)
-    : QWidget(parent), mSwatch(new SwatchButton), mHex(new QLineEdit), mPopup(new ColourPopup(this)) {
+    : QWidget(parent), mSwatch(new SwatchButton), mHex(new HexField), mPopup(new ColourPopup(this)) {
     setAccessibleName(name);
     mSwatch->setObjectName("swatch");
     mSwatch->setAccessibleName(name);
     mSwatch->setToolTip(tr("%1: click to change it").arg(name));
     mHex->setObjectName("hex");
     mHex->setAccessibleName(tr("%1, hex digits").arg(name));
-    mHex->setToolTip(tr("Red, green and blue as hex digits"));
-    mHex->setMinimumWidth(mHex->fontMetrics().horizontalAdvance("#dddddd") + 14);
-    static const QRegularExpression kDigits("#?[0-9a-fA-F]{0,6}");
-    mHex->setValidator(new QRegularExpressionValidator(kDigits, mHex));
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(0, 0, 0, 0);
     row->setSpacing(6);
     row->addWidget(mSwatch);
     row->addWidget(mHex, 1);
     connect(mSwatch, &QToolButton::clicked, this, &ColourField::edit);
-    connect(mHex, &QLineEdit::editingFinished, this, &ColourField::enterHex);
+    connect(mHex, &HexField::entered, this, [this](glm::dvec3 srgb) {
+        show(srgb);
+        emit chosen(srgb);
+    });
     connect(mPopup, &ColourPopup::previewed, this, [this](glm::dvec3 srgb) {
         show(srgb);
         emit previewed(srgb);
@@ -63,17 +60,7 @@ bool ColourField::editing() const {
 void ColourField::show(glm::dvec3 srgb) {
     mColour = srgb;
     mSwatch->setColour(toQColor(srgb));
-    mHex->setText(hexText(srgb));
-}
-
-void ColourField::enterHex() {
-    QString digits = mHex->text();
-    if (!digits.startsWith('#')) digits.prepend('#');
-    const QColor entered(digits);
-    const bool valid = entered.isValid() && (digits.size() == 4 || digits.size() == 7);
-    if (!valid || entered.name() == hexText(mColour)) return show(mColour);
-    show(toSrgb(entered));
-    emit chosen(mColour);
+    mHex->setColour(srgb);
 }
 
 }  // namespace tessera

@@ -4,14 +4,13 @@
 #include <QWidget>
 #include <glm/vec3.hpp>
 
-class QLineEdit;
-
 namespace tessera {
 
 class ColourPopup;
+class HexField;
 class SwatchButton;
 
-// Gamma-encoded sRGB, 0..1.
+// Gamma-encoded sRGB, 0..1. Disabled, it is empty: there is nothing whose colour it could be.
 class ColourField : public QWidget {
     Q_OBJECT
 
@@ -34,11 +33,10 @@ class ColourField : public QWidget {
 
   private:
     void show(glm::dvec3 srgb);
-    void enterHex();
 
     glm::dvec3 mColour{0};
     SwatchButton* mSwatch;
-    QLineEdit* mHex;
+    HexField* mHex;
     ColourPopup* mPopup;
 };
 

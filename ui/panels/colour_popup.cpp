@@ -15,6 +15,7 @@
 #include "core/image/oklab.h"
 #include "ui/conversions.h"
 #include "ui/panels/gesture_slider.h"
+#include "ui/panels/hex_field.h"
 
 namespace tessera {
 
@@ -66,6 +67,14 @@ ColourPopup::ColourPopup(QWidget* parent) : QFrame(parent, Qt::Popup) {
     addRow(1, kLightness, tr("L"), tr("Lightness"), 1);
     addRow(2, kChroma, tr("C"), tr("Chroma"), 3);
     addRow(3, kHue, tr("H"), tr("Hue"), 0);
+    mHex = new HexField;
+    mHex->setObjectName("hex");
+    mHex->setAccessibleName(tr("Hex digits"));
+    grid->addWidget(mHex, 4, 2);
+    connect(mHex, &HexField::entered, this, [this](glm::dvec3 srgb) {
+        setColour(srgb);
+        emit previewed(mColour);
+    });
     grid->setColumnStretch(1, 1);
 }
 
@@ -132,6 +141,7 @@ void ColourPopup::showCoordinates() {
         mSliders[i]->update();
         mFields[i]->setValue(mLch[int(i)] * kShown[i]);
     }
+    mHex->setColour(mColour);
     update();
 }
 

@@ -1,4 +1,5 @@
-// The popup of a colour field: lightness, chroma and hue on sliders painted with what they would give.
+// The popup of a colour field: lightness, chroma and hue on sliders painted with what they would give, and
+// the hex digits.
 #pragma once
 
 #include <QFrame>
@@ -10,6 +11,7 @@ class QDoubleSpinBox;
 namespace tessera {
 
 class GestureSlider;
+class HexField;
 
 // (L, C, h) with C lowered until the colour is one of sRGB; gamma-encoded.
 glm::dvec3 oklchInGamut(glm::dvec3 lch);
@@ -48,6 +50,7 @@ class ColourPopup : public QFrame {
     bool mOpen = false;
     std::array<GestureSlider*, 3> mSliders{};
     std::array<QDoubleSpinBox*, 3> mFields{};
+    HexField* mHex = nullptr;
     QWidget* mComparison = nullptr;
 };
 

@@ -72,9 +72,7 @@ PalettePanel::~PalettePanel() = default;
 
 QWidget* PalettePanel::makePalettePart() {
     auto* part = new QWidget;
-    auto* column = new QVBoxLayout(part);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(8);
+    auto* column = partColumn(part);
     mColours = new QSpinBox;
     mColours->setObjectName("colours");
     mColours->setAccessibleName(tr("How many dominant colours"));
@@ -97,16 +95,14 @@ QWidget* PalettePanel::makePalettePart() {
 
 QWidget* PalettePanel::makeSwatchPart() {
     auto* part = new QWidget;
-    auto* column = new QVBoxLayout(part);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(8);
+    auto* column = partColumn(part);
     column->addWidget(headingLabel(tr("Swatches")));
     mSwatches = new QGridLayout;
     mSwatches->setSpacing(2);
     mSwatches->setColumnStretch(kSwatchColumns, 1);
     column->addLayout(mSwatches);
-    column->addWidget(mSwatchHint = dimLabel(tr(
-                          "Colours that you keep, for all documents. A click makes one the tools' colour.")));
+    column->addWidget(
+        mSwatchHint = dimLabel(tr("Colours that you keep, for all documents. Click one to work with it.")));
     auto* add = panelButton(tr("Keep"), tr("Keep the tools' colour as a swatch"), "keep");
     auto* import = panelButton(tr("Import…"), tr("Add the swatches of a .gpl file"), "import");
     auto* save = panelButton(tr("Export…"), tr("Write the swatches to a .gpl file"), "export");

@@ -61,8 +61,7 @@ RecolourPanel::~RecolourPanel() = default;
 
 QWidget* RecolourPanel::makeToolColours() {
     auto* part = new QWidget;
-    auto* grid = new QGridLayout(part);
-    grid->setContentsMargins(0, 0, 0, 0);
+    auto* grid = partGrid(part);
     mColour = new ColourField(tr("Colour"));
     mColour->setObjectName("colour");
     mSecondColour = new ColourField(tr("Second colour"));
@@ -94,8 +93,7 @@ QWidget* RecolourPanel::makeToolColours() {
 
 QWidget* RecolourPanel::makeReplacePart() {
     auto* part = new QWidget;
-    auto* grid = new QGridLayout(part);
-    grid->setContentsMargins(0, 0, 0, 0);
+    auto* grid = partGrid(part);
     grid->setColumnStretch(0, 1);
     mMean = new ColourField(tr("Colour of the selection"));
     mMean->setObjectName("mean");
@@ -110,8 +108,7 @@ QWidget* RecolourPanel::makeReplacePart() {
 
 QWidget* RecolourPanel::makeSliders() {
     auto* part = new QWidget;
-    auto* grid = new QGridLayout(part);
-    grid->setContentsMargins(0, 0, 0, 0);
+    auto* grid = partGrid(part);
     grid->setHorizontalSpacing(8);
     grid->setVerticalSpacing(4);
     grid->setColumnStretch(1, 1);
@@ -130,8 +127,8 @@ QWidget* RecolourPanel::makeSliders() {
     mFeather = new QDoubleSpinBox;
     mFeather->setObjectName("feather");
     mFeather->setAccessibleName(tr("Feather"));
-    mFeather->setToolTip(
-        tr("How far inside the selection's border recolourings fade in; at features they stay sharp"));
+    mFeather->setToolTip(tr(
+        "How far to either side of the selection's border recolourings fade; at features they stay sharp"));
     mFeather->setRange(0, kMostFeatherPx);
     mFeather->setDecimals(1);
     mFeather->setSuffix(tr(" px"));
@@ -197,9 +194,7 @@ void RecolourPanel::addSlider(QGridLayout* grid, Row row, const QString& name, c
 
 QWidget* RecolourPanel::makeButtons() {
     auto* part = new QWidget;
-    auto* grid = new QGridLayout(part);
-    grid->setContentsMargins(0, 0, 0, 0);
-    grid->setSpacing(6);
+    auto* grid = partGrid(part);
     auto* hide =
         panelButton(tr("Hide"), tr("Take the selected patches out of sight; exports keep them"), "hide");
     auto* lock = panelButton(tr("Lock"), tr("Keep tools off the selected patches"), "lock");

@@ -86,9 +86,7 @@ SelectionPanel::SelectionPanel(QWidget* parent) : LazyPanel(parent), mCounts(new
 
 QWidget* SelectionPanel::makeButtons() {
     auto* part = new QWidget;
-    auto* grid = new QGridLayout(part);
-    grid->setContentsMargins(0, 0, 0, 0);
-    grid->setSpacing(6);
+    auto* grid = partGrid(part);
     const auto add = [&](const QString& text, const QString& tip, const char* name, bool needsSelection,
                          const std::function<void(DocumentSession&)>& act) {
         QPushButton* button = panelButton(text, tip, name);
@@ -115,9 +113,7 @@ QWidget* SelectionPanel::makeButtons() {
 
 QWidget* SelectionPanel::makeStoredPart() {
     auto* part = new QWidget;
-    auto* column = new QVBoxLayout(part);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(6);
+    auto* column = partColumn(part);
     auto* head = new QHBoxLayout;
     head->addWidget(headingLabel(tr("Stored selections")), 1);
     QPushButton* storeButton =
@@ -129,7 +125,7 @@ QWidget* SelectionPanel::makeStoredPart() {
     mStored->setObjectName("stored");
     mStored->setAccessibleName(tr("Stored selections"));
     column->addWidget(mStored, 1);
-    mStoredHint = dimLabel(tr("Store a selection to come back to it later; it is saved with the document."));
+    mStoredHint = dimLabel(tr("Kept with the document, to come back to."));
     column->addWidget(mStoredHint);
     connect(storeButton, &QPushButton::clicked, this, &SelectionPanel::store);
     connect(mStored, &QListWidget::itemChanged, this, &SelectionPanel::rename);
