@@ -15,8 +15,9 @@ namespace tessera::cli {
 
 namespace {
 
-// Set by the signal handler, which may do no more than that.
-volatile std::sig_atomic_t signalled = 0;
+// Set by the signal handler, which may do no more than that, on whichever thread it runs.
+std::atomic<int> signalled = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 
 void onSignal(int) {
     signalled = 1;

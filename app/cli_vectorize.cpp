@@ -52,6 +52,15 @@ Result<void> addErrors(Document& document, const Image& image, Progress& progres
     return {};
 }
 
+// Colours are rounded as finely as their errors deserve; then the errors are those of the rounded ones.
+Result<Document> storedWithErrors(Document document, const Image& image, Progress& progress) {
+    if (auto added = addErrors(document, image, progress); !added) return tl::unexpected(added.error());
+    auto stored = asStored(std::move(document));
+    if (!stored) return stored;
+    if (auto added = addErrors(*stored, image, progress); !added) return tl::unexpected(added.error());
+    return stored;
+}
+
 Result<void> addPreview(Document& document, Progress& progress) {
     const double side = std::max(document.mesh.width(), document.mesh.height());
     const double scale = std::min(1.0, kPreviewSidePx / side);
@@ -83,13 +92,8 @@ Result<Outcome> vectorizeFile(const Arguments& arguments, VectorizeSettings sett
     document.settings = settings;
     document.report = std::move(vectorized->report);
     document.source = std::move(picture->source);
-    // Colours are rounded as finely as their errors deserve; then the errors are those of the rounded ones.
-    if (auto added = addErrors(document, picture->image, progress); !added)
-        return tl::unexpected(added.error());
-    auto stored = asStored(std::move(document));
+    auto stored = storedWithErrors(std::move(document), picture->image, progress);
     if (!stored) return tl::unexpected(stored.error());
-    if (auto added = addErrors(*stored, picture->image, progress); !added)
-        return tl::unexpected(added.error());
     if (auto added = addPreview(*stored, progress); !added) return tl::unexpected(added.error());
     if (arguments.embed)
         stored->embeddedSource = std::make_shared<const std::vector<uint8_t>>(std::move(*file));
@@ -284,7 +288,11 @@ Result<VectorImage> vectorizeAsAsked(const Image& image, const VectorizeArgument
         settings.patches = patchesForDetail(*arguments.detail, image.width(), image.height());
     if (!arguments.maxError) return vectorize(image, settings, progress, observe);
     const auto meanError = [&](const PatchMesh& mesh, Progress& measuring) {
-        return errorsOf(mesh, image, measuring).map([](const ImageDifference& d) { return d.mae; });
+        Document document;
+        document.mesh = mesh;
+        return storedWithErrors(std::move(document), image, measuring).map([](const Document& d) {
+            return d.difference->mae;
+        });
     };
     return vectorizeToError(image, settings, {*arguments.maxError, meanError}, progress, observe);
 }

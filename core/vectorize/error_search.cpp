@@ -12,18 +12,23 @@ namespace tessera {
 namespace {
 
 // A draft takes a fifth of a full run.
-constexpr int kDrafts = 3, kFullRuns = 2;
+constexpr int kDrafts = 3, kFullRuns = 3;
 // Of log error over log patches: what photographs have on the average, and what is believed of two drafts.
 constexpr double kUsualSlope = -.42, kSteepest = -.9, kFlattest = -.08;
 // So close to a draft, as a factor of patches, the error between and beside drafts is known well enough.
 constexpr double kNear = 1.35;
+
+// Of two runs: a texture that no patch resolves leaves almost the same with many more of them.
+constexpr double kSteepestRuns = -1.5, kFlattestRuns = -.04;
+// How far apart runs must be in log patches to tell the slope, and how far from one the next may be.
+constexpr double kSameRun = .02, kFarthest = 1.4;
 
 struct Run {
     double patches, error;
 };
 
 // What a standard run leaves of a draft's error.
-constexpr double kUsualShare = .82;
+constexpr double kUsualShare = .7;
 
 std::string text(double value) {
     char buffer[32];
@@ -84,15 +89,29 @@ double ErrorSearch::draftError(double patches) const {
     return b.error * std::pow(patches / b.patches, slope);
 }
 
-// Of a full run; right for the last one.
+// Of a full run: a part of a draft's, which is right for the last one; through the last two a line.
 double ErrorSearch::predictedError(double patches) const {
-    const double share = mRuns.empty() ? kUsualShare : mRuns.back().error / draftError(mRuns.back().patches);
-    return share * draftError(patches);
+    if (mRuns.empty()) return kUsualShare * draftError(patches);
+    const Run& last = mRuns.back();
+    if (mRuns.size() > 1) {
+        const Run& before = mRuns[mRuns.size() - 2];
+        const double steps = std::log(last.patches / before.patches);
+        if (std::abs(steps) > kSameRun)
+            return last.error *
+                   std::pow(patches / last.patches, std::clamp(std::log(last.error / before.error) / steps,
+                                                               kSteepestRuns, kFlattestRuns));
+    }
+    return last.error * draftError(patches) / draftError(last.patches);
 }
 
 double ErrorSearch::nextGuess() const {
     constexpr int kBisections = 40;
     double low = std::log(2), high = std::log(mMost);
+    if (!mRuns.empty()) {
+        const double last = std::log(mRuns.back().patches);
+        low = std::max(low, std::min(last - kFarthest, high));
+        high = std::min(high, std::max(last + kFarthest, low));
+    }
     for (int i = 0; i < kBisections; ++i) {
         const double middle = (low + high) / 2;
         (predictedError(std::exp(middle)) > mGoal.error ? low : high) = middle;
@@ -159,7 +178,7 @@ void ErrorSearch::file(VectorizeReport& report) const {
 }
 
 Result<VectorImage> ErrorSearch::run(Progress& progress, const StageObserver& observe) {
-    constexpr double kDraftShare = .08, kFirstShare = .4;
+    constexpr double kDraftShare = .08, kRunShare = .5;
     double left = 1;
     const auto spend = [&](double share) {
         left -= share;
@@ -178,7 +197,8 @@ Result<VectorImage> ErrorSearch::run(Progress& progress, const StageObserver& ob
         // At a bound the same run again would tell nothing.
         if (!mRuns.empty() && patches == mPatches) break;
         mPatches = patches;
-        result = once(false, patches, spend(mRuns.empty() ? kFirstShare : left), progress, observe);
+        result = once(false, patches, spend(int(mRuns.size()) + 1 < kFullRuns ? kRunShare * left : left),
+                      progress, observe);
         if (!result) return result;
         if (reached(mRuns.back())) break;
         guess = nextGuess();

@@ -10,6 +10,9 @@
 #include "core/base/vector_clones.h"
 #include "core/mesh/tps.h"
 
+// No vector crosses a call, for whose conventions the compiler warns: what has vectors is inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace tessera {
 
 namespace {
