@@ -261,7 +261,7 @@ const RefitPoints& RefitPoints::all() {
 }
 
 RefitPoints RefitPoints::enoughFor(const PatchSpline& spline) {
-    constexpr size_t kFew = 24;
+    constexpr size_t kFew = 48;
     // Splines on the default centres share a factorization at all points.
     const bool shared = spline.sites.empty() && spline.maxTerms(kMaxChannels) > 0;
     if (shared || spline.sites.size() > kFew) return all();

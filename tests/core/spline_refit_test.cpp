@@ -50,7 +50,7 @@ TEST(RefitPoints, AreSitesWithTheCornersFirst) {
         for (uint8_t corner = 0; corner < 3; ++corner) EXPECT_EQ(points.sites[corner], corner);
     }
     std::vector<uint8_t> many;
-    for (uint8_t s = 0; s < 40; ++s) many.push_back(s);
+    for (uint8_t s = 0; s < 60; ++s) many.push_back(s);
     EXPECT_EQ(RefitPoints::enoughFor(withSites(many)).size(), size_t(kCentreSites));
 }
 
