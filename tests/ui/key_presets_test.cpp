@@ -49,6 +49,9 @@ class KeyPresetsInTheWindow : public MainWindowTest {
             if (QWidget* dialog = QApplication::activeModalWidget()) dialog->close();
         });
         closer.start(20);
+        // A dialog before has left no window active where nothing manages windows.
+        window->activateWindow();
+        EXPECT_TRUE(QTest::qWaitForWindowActive(window.get()));
         canvas().setFocus();
         QTest::keyClick(&canvas(), press.key, press.modifiers);
         // Not in the way of the next: a tool's change is another press's business.
