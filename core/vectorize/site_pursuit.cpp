@@ -103,6 +103,25 @@ class Pursuit {
     int mChannels;
 };
 
+// A patch with more cells than this for each site looks at half of them.
+constexpr size_t kManyPerSite = 4;
+
+// Keeps the cells of one colour of a chequerboard; each has one sample. `columns` of cells a row.
+void keepEveryOther(PatchCells& cells, int columns) {
+    size_t kept = 0;
+    for (size_t i = 0; i < cells.cells.size(); ++i) {
+        const uint32_t number = cells.cells[i].number;
+        if ((number % uint32_t(columns) + number / uint32_t(columns)) % 2 != 0) continue;
+        cells.cells[kept] = cells.cells[i];
+        cells.x[kept] = cells.x[i];
+        cells.y[kept] = cells.y[i];
+        ++kept;
+    }
+    cells.cells.resize(kept);
+    cells.x.resize(kept);
+    cells.y.resize(kept);
+}
+
 // How many terms pay at this price each.
 int worthwhileTerms(const std::vector<float>& errors, double price) {
     size_t best = 0;
@@ -164,7 +183,11 @@ std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture,
             if (cells.cells.empty()) continue;
             const uint32_t p = sampler.patches()[i].index;
             const int most = std::clamp(int(cells.cells.size()), kCorners, int(sites.size()));
+            const bool thinned = cells.cells.size() > kManyPerSite * sites.size();
+            if (thinned) keepEveryOther(cells, picture.width());
             Pursuit(cells, picture, sites, most).run(most, choices[p].sites, errors[p]);
+            for (auto& curve : errors[p])
+                for (float& error : curve) error *= thinned ? 2 : 1;
         }
     });
     if (progress.stopRequested()) return {};
