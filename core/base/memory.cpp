@@ -1,6 +1,8 @@
 // See memory.h.
 #include "core/base/memory.h"
 
+#include <cstdlib>  // defines __GLIBC__ where it is the library
+
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
