@@ -13,6 +13,10 @@ namespace {
 
 constexpr size_t kLanes = 8;
 
+size_t padded(size_t columns) {
+    return (columns + kLanes - 1) / kLanes * kLanes;
+}
+
 // The same sum with and without vector instructions: one for each lane, then those.
 TESSERA_VECTOR_CLONES
 void multiplyRows(const int16_t* entries, const float* scales, size_t rows, size_t stride, const float* x,

@@ -29,11 +29,7 @@ class PackedRows {
     void multiplyTransposed(std::span<const float> factors, std::span<float> sum) const;
 
   private:
-    // Rows are filled up with zeros to whole groups.
-    static constexpr size_t kGroup = 8;
-    static size_t padded(size_t columns) { return (columns + kGroup - 1) / kGroup * kGroup; }
-
-    size_t mStride = 0;
+    size_t mStride = 0;  // rows are filled up with zeros to whole vectors
     std::vector<int16_t> mEntries;
     std::vector<float> mScales;  // by row
 };
