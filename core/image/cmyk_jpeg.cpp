@@ -1,22 +1,15 @@
 // See cmyk_jpeg.h.
 #include "core/image/cmyk_jpeg.h"
 
-#include <array>
-#include <csetjmp>
-#include <cstdio>
-// After cstdio, which it needs but does not include.
-#include <jpeglib.h>
+#include "core/image/jpeg_errors.h"
 
 namespace tessera {
 
 namespace {
 
-// Everything that must outlive a longjmp out of libjpeg lives here, outside the function that it returns to.
 struct Decoder {
-    jpeg_error_mgr errors{};
+    JpegErrors errors;
     jpeg_decompress_struct jpeg{};
-    std::jmp_buf onError;
-    std::string defect;
     CmykPixels pixels;
 
     Decoder() = default;
@@ -25,29 +18,17 @@ struct Decoder {
     ~Decoder() { jpeg_destroy_decompress(&jpeg); }
 };
 
-std::string messageOf(j_common_ptr jpeg) {
-    std::array<char, JMSG_LENGTH_MAX> text{};
-    jpeg->err->format_message(jpeg, text.data());
-    return text.data();
-}
-
-void onFatal(j_common_ptr jpeg) {
-    auto* decoder = static_cast<Decoder*>(jpeg->client_data);
-    decoder->defect = messageOf(jpeg);
-    std::longjmp(decoder->onError, 1);
-}
-
 void onMessage(j_common_ptr jpeg, int level) {
     if (level >= 0) return;
-    auto* decoder = static_cast<Decoder*>(jpeg->client_data);
-    const std::string message = messageOf(jpeg);
-    if (decoder->defect.empty() && !isHarmlessJpegWarning(message)) decoder->defect = message;
+    std::string& defect = JpegErrors::of(jpeg).defect;
+    const std::string message = JpegErrors::messageOf(jpeg);
+    if (defect.empty() && !isHarmlessJpegWarning(message)) defect = message;
 }
 
-// Leaves its reason in decoder.defect. No object with a destructor may live in here.
+// Leaves its reason in decoder.errors. No object with a destructor may live in here.
 void decode(Decoder& decoder, std::span<const uint8_t> bytes) {
     jpeg_decompress_struct& jpeg = decoder.jpeg;
-    if (setjmp(decoder.onError) != 0) return;
+    if (setjmp(decoder.errors.onFatal) != 0) return;
     jpeg_create_decompress(&jpeg);
     jpeg_mem_src(&jpeg, bytes.data(), static_cast<unsigned long>(bytes.size()));
     jpeg_read_header(&jpeg, TRUE);
@@ -73,12 +54,10 @@ bool isHarmlessJpegWarning(const std::string& message) {
 
 Result<CmykPixels> readCmykJpeg(std::span<const uint8_t> bytes) {
     Decoder decoder;
-    decoder.jpeg.err = jpeg_std_error(&decoder.errors);
-    decoder.jpeg.client_data = &decoder;
-    decoder.errors.error_exit = onFatal;
-    decoder.errors.emit_message = onMessage;
+    decoder.errors.watch(decoder.jpeg);
+    decoder.errors.manager.emit_message = onMessage;
     decode(decoder, bytes);
-    if (!decoder.defect.empty()) return failure(ErrorCode::CannotRead, decoder.defect);
+    if (!decoder.errors.defect.empty()) return failure(ErrorCode::CannotRead, decoder.errors.defect);
     // Adobe's programs store the amount of paper left, and say so by their marker.
     if (decoder.jpeg.saw_Adobe_marker)
         for (uint8_t& ink : decoder.pixels.ink) ink = uint8_t(255 - ink);

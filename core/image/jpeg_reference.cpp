@@ -2,17 +2,12 @@
 #include "core/image/jpeg_reference.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <csetjmp>
-#include <cstdio>
 #include <cstdlib>
-#include <string>
-// After cstdio, which it needs but does not include.
-#include <jpeglib.h>
 
 #include "core/image/image_compare.h"
 #include "core/image/image_io.h"
+#include "core/image/jpeg_errors.h"
 
 namespace tessera {
 
@@ -20,12 +15,9 @@ namespace {
 
 constexpr int kWorst = 1, kBest = 100;
 
-// Everything that must outlive a longjmp out of libjpeg lives here, outside the function that it returns to.
 struct Encoder {
-    jpeg_error_mgr errors{};
+    JpegErrors errors;
     jpeg_compress_struct jpeg{};
-    std::jmp_buf onError;
-    std::string defect;
     unsigned char* bytes = nullptr;
     unsigned long size = 0;
 
@@ -38,18 +30,10 @@ struct Encoder {
     }
 };
 
-void onFatal(j_common_ptr jpeg) {
-    auto* encoder = static_cast<Encoder*>(jpeg->client_data);
-    std::array<char, JMSG_LENGTH_MAX> text{};
-    jpeg->err->format_message(jpeg, text.data());
-    encoder->defect = text.data();
-    std::longjmp(encoder->onError, 1);
-}
-
-// Leaves its reason in encoder.defect. No object with a destructor may live in here.
+// Leaves its reason in encoder.errors. No object with a destructor may live in here.
 void encode(Encoder& encoder, uint8_t* rgb, int width, int height, int quality) {
     jpeg_compress_struct& jpeg = encoder.jpeg;
-    if (setjmp(encoder.onError) != 0) return;
+    if (setjmp(encoder.errors.onFatal) != 0) return;
     jpeg_create_compress(&jpeg);
     jpeg_mem_dest(&jpeg, &encoder.bytes, &encoder.size);
     jpeg.image_width = JDIMENSION(width);
@@ -90,11 +74,9 @@ Result<std::vector<uint8_t>> encodeReferenceJpeg(const Image& image, int quality
         return failure(ErrorCode::Usage, "the quality of a JPEG is a number from 1 to 100");
     std::vector<uint8_t> rgb = rgb8OverWhite(image);
     Encoder encoder;
-    encoder.jpeg.err = jpeg_std_error(&encoder.errors);
-    encoder.jpeg.client_data = &encoder;
-    encoder.errors.error_exit = onFatal;
+    encoder.errors.watch(encoder.jpeg);
     encode(encoder, rgb.data(), image.width(), image.height(), quality);
-    if (!encoder.defect.empty()) return failure(ErrorCode::Internal, encoder.defect);
+    if (!encoder.errors.defect.empty()) return failure(ErrorCode::Internal, encoder.errors.defect);
     return std::vector<uint8_t>(encoder.bytes, encoder.bytes + encoder.size);
 }
 
