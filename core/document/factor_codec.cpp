@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/base/parallel.h"
+#include "core/base/row_products.h"
 
 namespace tessera {
 
@@ -410,8 +411,7 @@ class FactorCoder {
             }
             const double value = factors[k] * step;
             if (k < kCorners) corners += value;
-            const auto function = basis.function(int(k));
-            for (size_t s = 0; s < mLattice.size(); ++s) sum[s] += value * function[s];
+            addRows({&value, 1}, basis.function(int(k)).data(), 0, {sum.data(), mLattice.size()});
             const double miss = std::max(std::abs(value - foreseen), .25 * step);
             if (way == Across) seam += (miss - seam) * kRate;
             if (way == Detail) detail += (miss / spread - detail) * kRate;
@@ -451,21 +451,37 @@ class FactorCoder {
     std::array<Activities, kMaxChannels> mLast{};
 };
 
-// Block after block: what takes time apart from the stream is done for many patches at once.
+// Block after block: what takes time apart from the stream is done for many patches at once, for the next
+// block while this one's stream is coded.
 template <class Coder, class Finish>
 std::string codeAll(FactorCoder<Coder>& coder, size_t patches, Finish&& finish) {
-    std::vector<std::optional<FactorBasis>> prepared(std::min(kBlock, patches));
+    using Prepared = std::vector<std::optional<FactorBasis>>;
+    const auto each = [&](size_t first, Prepared& prepared, auto&& visit) {
+        parallelFor(std::min(kBlock, patches - first), kGrain, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) visit(uint32_t(first + i), prepared[i]);
+        });
+    };
+    const auto prepare = [&](size_t first, Prepared& prepared) {
+        if (first >= patches) return;
+        each(first, prepared,
+             [&](uint32_t f, std::optional<FactorBasis>& basis) { basis = coder.prepare(f); });
+    };
+    const auto code = [&](size_t first, const Prepared& prepared) -> std::string {
+        for (size_t f = first; f < std::min(first + kBlock, patches); ++f)
+            if (auto wrong = coder.codePatch(uint32_t(f), prepared[f - first]); !wrong.empty()) return wrong;
+        return {};
+    };
+    Prepared now(std::min(kBlock, patches)), next(now.size());
+    prepare(0, now);
     for (size_t first = 0; first < patches; first += kBlock) {
-        const size_t count = std::min(kBlock, patches - first);
-        const auto each = [&](auto&& visit) {
-            parallelFor(count, kGrain, [&](size_t begin, size_t end) {
-                for (size_t i = begin; i < end; ++i) visit(uint32_t(first + i), prepared[i]);
-            });
-        };
-        each([&](uint32_t f, std::optional<FactorBasis>& basis) { basis = coder.prepare(f); });
-        for (size_t i = 0; i < count; ++i)
-            if (auto wrong = coder.codePatch(uint32_t(first + i), prepared[i]); !wrong.empty()) return wrong;
-        each(finish);
+        std::string wrong;
+        parallelFor(2, 1, [&](size_t begin, size_t end) {
+            if (begin == 0) wrong = code(first, now);
+            if (end == 2) prepare(first + kBlock, next);
+        });
+        if (!wrong.empty()) return wrong;
+        each(first, now, finish);
+        std::swap(now, next);
     }
     return {};
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/row_products.h"
+#include "core/base/vector_clones.h"
 
 namespace tessera {
 
@@ -30,6 +32,16 @@ double latticeKernel(SitePlace p, SitePlace q, int subdivisions) {
     const int unit = subdivisions * subdivisions;
     if (squared == 0) return 0;
     return double(squared) / unit * (portableLog(squared) - portableLog(unit)) / 2;
+}
+
+// The function whose multiple by `left` is `row`, and what it leaves of the kernel's diagonal.
+TESSERA_VECTOR_CLONES
+void finishFunction(const double* row, size_t count, double left, double* __restrict function,
+                    double* __restrict power) {
+    for (size_t s = 0; s < count; ++s) {
+        function[s] = row[s] / left;
+        power[s] -= function[s] * row[s];
+    }
 }
 
 }  // namespace
@@ -115,6 +127,7 @@ SiteBasis::SiteBasis(const SiteLattice& lattice, std::span<const uint8_t> sites,
     : mLattice(&lattice),
       mSites(sites.begin(), sites.end()),
       mFunctions(sites.size() * lattice.size(), 0),
+      mAtSites(sites.size() * sites.size(), 0),
       mSpreads(sites.size()) {
     const size_t places = lattice.size();
     TESSERA_CHECK(size() >= kCorners && mSites[0] == 0 && mSites[1] == 1 && mSites[2] == 2);
@@ -125,7 +138,7 @@ SiteBasis::SiteBasis(const SiteLattice& lattice, std::span<const uint8_t> sites,
     ends[mSites.size()] = true;
 
     // What the functions so far leave of the kernel's diagonal.
-    std::vector<double> power(places, 0), row(places);
+    std::vector<double> power(places, 0), row(places), known(mSites.size());
     for (size_t s = kCorners; s < places; ++s) power[s] = lattice.kernel(s)[s];
     size_t end = kCorners;
     for (size_t k = kCorners; k < mSites.size(); ++k) {
@@ -143,47 +156,36 @@ SiteBasis::SiteBasis(const SiteLattice& lattice, std::span<const uint8_t> sites,
         const double left = power[site];
         TESSERA_CHECK(left > 0);  // the sites differ
         std::ranges::copy(lattice.kernel(site), row.begin());
-        for (size_t j = kCorners; j < k; ++j) {
-            const double* f = &mFunctions[j * places];
-            const double factor = f[site] * mSpreads[j];
-            for (size_t s = 0; s < places; ++s) row[s] -= factor * f[s];
+        double* atSite = &mAtSites[k * mSites.size()];
+        for (size_t j = 0; j < k; ++j) {
+            atSite[j] = mFunctions[j * places + site];
+            known[j] = -(atSite[j] * mSpreads[j]);
         }
-        double* out = &mFunctions[k * places];
-        for (size_t s = 0; s < places; ++s) {
-            out[s] = row[s] / left;
-            power[s] -= out[s] * row[s];
-        }
+        addRows({&known[kCorners], k - kCorners}, &mFunctions[kCorners * places], places, row);
+        finishFunction(row.data(), places, left, &mFunctions[k * places], power.data());
         mSpreads[k] = left;
     }
     for (double& s : mSpreads) s = std::sqrt(s);
 
-    // Site by site, so that the inner loop is over independent sums.
     const size_t n = mSites.size();
-    mProducts.resize(n * n);
-    std::vector<double> atSite(n);
-    for (size_t s = 0; s < places; ++s) {
-        for (size_t k = 0; k < n; ++k) atSite[k] = mFunctions[k * places + s];
-        for (size_t i = 0; i < n; ++i) {
-            const double weighted = lattice.weight(s) * atSite[i];
-            double* products = &mProducts[i * n];
-            for (size_t j = 0; j <= i; ++j) products[j] += weighted * atSite[j];
-        }
-    }
+    std::vector<double> weighted(mFunctions.size());
+    for (size_t k = 0; k < n; ++k)
+        for (size_t s = 0; s < places; ++s)
+            weighted[k * places + s] = lattice.weight(s) * mFunctions[k * places + s];
+    mProducts = lowerProducts(weighted, mFunctions, n, places);
 }
 
 SiteBasis::Norms SiteBasis::norms(int n) const {
     const auto count = size_t(n);
     Norms norms{n, std::vector<double>(count * count, 0)};
+    std::vector<double> known(count + 1);
     double* t = norms.triangle.data();
     // Cholesky from the last function back; row k is orthogonal to the functions after k.
     for (size_t k = count; k-- > 0;) {
         double* row = t + k * count;
-        for (size_t j = 0; j <= k; ++j) row[j] = mProducts[k * mSites.size() + j];
-        for (size_t later = k + 1; later < count; ++later) {
-            const double* above = t + later * count;
-            const double factor = above[k];
-            for (size_t j = 0; j <= k; ++j) row[j] -= factor * above[j];
-        }
+        std::copy_n(&mProducts[k * mSites.size()], k + 1, row);
+        for (size_t later = k + 1; later < count; ++later) known[later] = -t[later * count + k];
+        addRows({&known[k + 1], count - k - 1}, row + count, count, {row, k + 1});
         const double root = std::sqrt(row[k]);
         for (size_t j = 0; j <= k; ++j) row[j] /= root;
     }
@@ -206,9 +208,8 @@ std::vector<double> SiteBasis::values(const PatchSpline& spline, int c, int coun
 
 std::vector<double> SiteBasis::factors(std::span<const double> values) const {
     std::vector<double> factors(values.begin(), values.end());
-    for (size_t k = 0; k < factors.size(); ++k)
-        for (size_t i = k + 1; i < factors.size(); ++i)
-            factors[i] -= factors[k] * mFunctions[k * mLattice->size() + mSites[i]];
+    for (size_t i = 1; i < factors.size(); ++i)
+        for (size_t k = 0; k < i; ++k) factors[i] -= factors[k] * mAtSites[i * mSites.size() + k];
     return factors;
 }
 
@@ -223,8 +224,8 @@ PatchSpline SiteBasis::spline(std::span<const std::vector<double>> factors) cons
         for (size_t k = n; k-- > kCorners;) {
             const size_t site = mSites[k];
             const double alpha = left[k] / (mSpreads[k] * mSpreads[k]);
-            for (size_t j = kCorners; j < k; ++j)
-                left[j] -= alpha * mSpreads[j] * mSpreads[j] * mFunctions[j * mLattice->size() + site];
+            const double* atSite = &mAtSites[k * mSites.size()];
+            for (size_t j = kCorners; j < k; ++j) left[j] -= alpha * mSpreads[j] * mSpreads[j] * atSite[j];
             // The kernel is phi less what makes it 0 at the corners.
             alphas[k] = alpha;
             for (size_t q = 0; q < kCorners; ++q) {

@@ -101,6 +101,7 @@ class SiteBasis {
     const SiteLattice* mLattice;
     std::vector<uint8_t> mSites;
     std::vector<double> mFunctions;
+    std::vector<double> mAtSites;  // row k: the functions before k at site k
     std::vector<double> mSpreads;
     std::vector<double> mProducts;  // of functions, size() rows
 };

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/base/vector_clones.h"
+#include "core/base/row_products.h"
 
 namespace tessera {
 
@@ -25,36 +25,12 @@ double kernel(glm::dvec2 a, glm::dvec2 b) {
     return tpsKernel(d.x * d.x + d.y * d.y);
 }
 
-// Where functions are asked for, and where their values go.
-struct PointBlock {
-    const float *x, *y;
-    size_t count;
-    float* out;
-    size_t stride;
-};
-
-// The Newton functions from the kernels, kernels[j * kernelStride + i]: their coefficients are a triangle.
-TESSERA_VECTOR_CLONES
-void combine(const double* coefficients, size_t functions, const double* kernels, size_t kernelStride,
-             PointBlock to) {
-    std::vector<double> sum(to.count);
-    for (size_t k = 0; k < functions; ++k) {
-        const double *b0 = coefficients + k, *b1 = b0 + functions, *b2 = b1 + functions;
-        for (size_t i = 0; i < to.count; ++i) sum[i] = *b0 + *b1 * double(to.x[i]) + *b2 * double(to.y[i]);
-        for (size_t j = 0; k >= kCorners && j <= k; ++j) {
-            const double alpha = coefficients[(kPolynomials + j) * functions + k];
-            const double* from = kernels + j * kernelStride;
-            for (size_t i = 0; i < to.count; ++i) sum[i] += alpha * from[i];
-        }
-        for (size_t i = 0; i < to.count; ++i) to.out[k * to.stride + i] = float(sum[i]);
-    }
-}
-
 }  // namespace
 
 NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
     : mSites(sites.begin(), sites.end()),
-      mCoefficients((sites.size() + kPolynomials) * sites.size(), 0),
+      mStride((sites.size() + 3) / 4 * 4),
+      mCoefficients((sites.size() + kPolynomials) * mStride, 0),
       mEnergies(sites.size(), 0) {
     const int n = size();
     TESSERA_CHECK(n >= kCorners && mSites[0] == 0 && mSites[1] == 1 && mSites[2] == 2);
@@ -122,40 +98,58 @@ NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
 
 void NewtonBasis::evaluate(const float* x, const float* y, size_t count, float* out, size_t stride) const {
     TESSERA_CHECK(count <= stride);
-    constexpr size_t kBlock = 64;  // points whose kernels the nearest cache holds
-    std::vector<double> kernels(mCentres.size() * kBlock);
+    constexpr size_t kBlock = 64, kTile = 8;  // points whose kernels the nearest cache holds; at once
+    constexpr size_t kFunctions = 4;          // at once
+    const size_t n = mSites.size();
+    // What the coefficients are of: 1, x, y, and the kernels about the centres.
+    std::vector<double> terms((kPolynomials + n) * kBlock, 0);
+    std::array<double, kFunctions * kBlock> values{};
     for (size_t first = 0; first < count; first += kBlock) {
         const size_t points = std::min(kBlock, count - first);
-        evaluateKernels(mCentres, x + first, y + first, points, kernels.data(), kBlock);
-        combine(mCoefficients.data(), mSites.size(), kernels.data(), kBlock,
-                {x + first, y + first, points, out + first, stride});
+        for (size_t i = 0; i < points; ++i) {
+            terms[i] = 1;
+            terms[kBlock + i] = double(x[first + i]);
+            terms[2 * kBlock + i] = double(y[first + i]);
+        }
+        evaluateKernels(mCentres, x + first, y + first, points, &terms[kPolynomials * kBlock], kBlock);
+        // A function has no coefficients at later centres, the first ones none but the polynomial's.
+        for (size_t k = 0; k < n; k += kFunctions) {
+            multiplyFour({&mCoefficients[k], mStride, 1}, terms.data(), kBlock,
+                         kPolynomials + std::min(k + kFunctions, n), values.data(), kBlock,
+                         (points + kTile - 1) / kTile * kTile);
+            for (size_t f = k; f < std::min(k + kFunctions, n); ++f)
+                for (size_t i = 0; i < points; ++i)
+                    out[f * stride + first + i] = float(values[(f - k) * kBlock + i]);
+        }
     }
 }
 
 void NewtonBasis::evaluateWithDerivatives(glm::dvec2 at, double* values, double* alongX,
                                           double* alongY) const {
-    const int n = size();
+    const size_t n = mSites.size();
     constexpr size_t kMost = kCentreSites + kPolynomials;
     std::array<double, kMost> f{1, at.x, at.y}, fx{0, 1, 0}, fy{0, 0, 1};
-    for (int i = 0; i < n; ++i) {
-        const glm::dvec2 d = at - centreSites()[mSites[size_t(i)]];
+    for (size_t i = 0; i < n; ++i) {
+        const glm::dvec2 d = at - mCentres[i];
         const double q = d.x * d.x + d.y * d.y;
         // phi = q log(q) / 2, so grad phi = (log q + 1) d; 0 at the centre.
         const double slope = q > 0 ? std::log(q) + 1 : 0;
-        f[size_t(kPolynomials + i)] = tpsKernel(q);
-        fx[size_t(kPolynomials + i)] = slope * d.x;
-        fy[size_t(kPolynomials + i)] = slope * d.y;
+        f[kPolynomials + i] = tpsKernel(q);
+        fx[kPolynomials + i] = slope * d.x;
+        fy[kPolynomials + i] = slope * d.y;
     }
-    for (int k = 0; k < n; ++k) {
-        values[k] = alongX[k] = alongY[k] = 0;
-        const int rows = k < kCorners ? kPolynomials : kPolynomials + k + 1;
-        for (int row = 0; row < rows; ++row) {
-            const double c = coefficient(row, k);
-            values[k] += c * f[size_t(row)];
-            alongX[k] += c * fx[size_t(row)];
-            alongY[k] += c * fy[size_t(row)];
-        }
-    }
+    const auto combine = [&](const std::array<double, kMost>& terms, double* sums) {
+        std::fill_n(sums, n, 0);
+        addRows({terms.data(), kPolynomials + kCorners}, mCoefficients.data(), mStride, {sums, n});
+        // From here on a row has coefficients of its own function and the later ones alone.
+        constexpr size_t kRows = 4;
+        for (size_t i = kCorners; i < n; i += kRows)
+            addRows({&terms[kPolynomials + i], std::min(kRows, n - i)},
+                    &mCoefficients[(kPolynomials + i) * mStride + i], mStride, {sums + i, n - i});
+    };
+    combine(f, values);
+    combine(fx, alongX);
+    combine(fy, alongY);
 }
 
 PatchSpline NewtonBasis::spline(std::span<const std::span<const double>> factors) const {

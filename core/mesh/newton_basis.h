@@ -37,14 +37,13 @@ class NewtonBasis {
 
   private:
     // Coefficient `row` of function k: b0, b1, b2, then the alphas.
-    double& coefficient(int row, int k) { return mCoefficients[size_t(row) * mSites.size() + size_t(k)]; }
-    double coefficient(int row, int k) const {
-        return mCoefficients[size_t(row) * mSites.size() + size_t(k)];
-    }
+    double& coefficient(int row, int k) { return mCoefficients[size_t(row) * mStride + size_t(k)]; }
+    double coefficient(int row, int k) const { return mCoefficients[size_t(row) * mStride + size_t(k)]; }
 
     std::vector<uint8_t> mSites;
     std::vector<glm::dvec2> mCentres;
-    std::vector<double> mCoefficients;
+    size_t mStride;                     // numbers a row, a multiple of four
+    std::vector<double> mCoefficients;  // row by row
     std::vector<double> mEnergies;
 };
 

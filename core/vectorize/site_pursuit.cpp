@@ -7,6 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/row_products.h"
 #include "core/mesh/newton_basis.h"
 #include "core/vectorize/patch_cells.h"
 
@@ -40,9 +41,10 @@ class Pursuit {
         for (Eigen::Index k = 0; k < count; ++k)
             for (int c = 0; c < mChannels; ++c)
                 targets(k, c) = double(picture.plane(c)[cells.cells[size_t(k)].number]);
-        mGram = MatrixXd::Zero(functions, functions);
-        mGram.selfadjointView<Eigen::Lower>().rankUpdate(rows);
-        mGram.triangularView<Eigen::StrictlyUpper>() = mGram.transpose();
+        const std::span<const double> values{rows.data(), size_t(rows.size())};
+        const std::vector<double> lower = lowerProducts(values, values, sites.size(), size_t(count));
+        mGram =
+            Eigen::Map<const RowMajor>(lower.data(), functions, functions).selfadjointView<Eigen::Lower>();
         mProducts = rows * targets;
         mNorm = mOwn = mGram.diagonal();
         mLeft = targets.colwise().squaredNorm();
@@ -88,7 +90,8 @@ class Pursuit {
         }
         const double root = std::sqrt(mNorm(site));
         column = mGram.col(site);
-        column.noalias() -= mTaken.leftCols(k) * mTaken.row(site).head(k).transpose();
+        const Eigen::VectorXd known = -mTaken.row(site).head(k).transpose();
+        addRows({known.data(), size_t(k)}, mTaken.data(), mSites.size(), {column.data(), mSites.size()});
         column /= root;
         const Eigen::RowVectorXd z = mProducts.row(site) / root;
         mProducts.noalias() -= column * z;

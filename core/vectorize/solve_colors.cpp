@@ -137,11 +137,11 @@ class ChannelSystem {
             for (size_t i = 0; i < patch.rowIds.size(); ++i)
                 totals(Eigen::Index(i)) = mTotals(patch.rowIds[i]);
             const int n = mTerms[p];
-            ax[p] = dampingOf(patch).head(n).cwiseProduct(x[p]);
-            ax[p].noalias() += gramOf(patch).topLeftCorner(n, n).cast<double>() * x[p];
             VectorXf sum(n);
             patch.rows.multiplyTransposed(spanOf(totals), {sum.data(), size_t(n)});
-            ax[p] += sum.cwiseProduct(scalesOf(patch).head(n)).cast<double>();
+            sum = sum.cwiseProduct(scalesOf(patch).head(n));
+            sum.noalias() += gramOf(patch).topLeftCorner(n, n) * x[p].cast<float>();
+            ax[p] = dampingOf(patch).head(n).cwiseProduct(x[p]) + sum.cast<double>();
         });
     }
 
