@@ -20,16 +20,31 @@ constexpr double kHalfOverHeight = .5 / kDomainHeight;
 constexpr std::array<std::array<double, kPolynomials>, kCorners> kBarycentric{
     {{1, -1, -kHalfOverHeight}, {0, 1, -kHalfOverHeight}, {0, 0, 1 / kDomainHeight}}};
 
-double kernel(glm::dvec2 a, glm::dvec2 b) {
-    const glm::dvec2 d = a - b;
-    return tpsKernel(d.x * d.x + d.y * d.y);
+// Of products: points whose terms the nearest cache holds, and a tile.
+constexpr size_t kBlock = 64, kPointsAtOnce = 8, kFunctionsAtOnce = 4;
+size_t roundUp(size_t points) {
+    return (points + kPointsAtOnce - 1) / kPointsAtOnce * kPointsAtOnce;
+}
+
+// phi of the distance between two sites.
+double siteKernel(uint8_t a, uint8_t b) {
+    static const std::vector<double> kKernels = [] {
+        std::vector<double> all;
+        for (const glm::dvec2 p : centreSites())
+            for (const glm::dvec2 q : centreSites()) {
+                const glm::dvec2 d = p - q;
+                all.push_back(tpsKernel(d.x * d.x + d.y * d.y));
+            }
+        return all;
+    }();
+    return kKernels[size_t(a) * kCentreSites + b];
 }
 
 }  // namespace
 
 NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
     : mSites(sites.begin(), sites.end()),
-      mStride((sites.size() + 3) / 4 * 4),
+      mStride((sites.size() + kFunctionsAtOnce - 1) / kFunctionsAtOnce * kFunctionsAtOnce),
       mCoefficients((sites.size() + kPolynomials) * mStride, 0),
       mEnergies(sites.size(), 0) {
     const int n = size();
@@ -43,67 +58,76 @@ NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
     // Function i >= 3 before orthogonalization: alpha 1 at centre i, -L_j(c_i) at corner j (L the barycentric
     // coordinates), less its interpolant at the corners. Its values at the centres are a positive definite
     // matrix K = G G^T, and the Newton functions are the rows of G^-1, scaled.
-    const int m = n - kCorners;
-    const auto at = [](int i, int j) { return size_t(i) * (size_t(i) + 1) / 2 + size_t(j); };
-    std::vector<double> g(at(m, 0)), inverse(g.size());
-    std::vector<glm::dvec3> shares(static_cast<size_t>(m)), cornerValues(static_cast<size_t>(m));
-    for (int i = 0; i < m; ++i) {
-        const glm::dvec2 c = places[mSites[size_t(i + kCorners)]];
-        const Barycentric l = barycentricOf(c);
-        shares[size_t(i)] = l;
-        for (int j = 0; j < kCorners; ++j) {
-            double value = kernel(c, places[size_t(j)]);
-            for (int q = 0; q < kCorners; ++q) value -= l[q] * kernel(places[size_t(q)], places[size_t(j)]);
-            cornerValues[size_t(i)][j] = value;
+    const size_t m = size_t(n) - kCorners;
+    std::vector<glm::dvec3> shares(m), cornerValues(m);
+    for (size_t i = 0; i < m; ++i) {
+        const uint8_t site = mSites[i + kCorners];
+        const Barycentric l = barycentricOf(places[site]);
+        shares[i] = l;
+        for (uint8_t j = 0; j < kCorners; ++j) {
+            double value = siteKernel(site, j);
+            for (uint8_t q = 0; q < kCorners; ++q) value -= l[q] * siteKernel(q, j);
+            cornerValues[i][j] = value;
         }
     }
-    for (int i = 0; i < m; ++i) {
-        const glm::dvec2 ci = places[mSites[size_t(i + kCorners)]];
-        for (int j = 0; j <= i; ++j) {
-            const glm::dvec2 cj = places[mSites[size_t(j + kCorners)]];
-            double sum = kernel(ci, cj);
-            for (int q = 0; q < kCorners; ++q) {
-                sum -= shares[size_t(i)][q] * kernel(places[size_t(q)], cj);
-                sum -= shares[size_t(j)][q] * cornerValues[size_t(i)][q];
+    std::vector<double> columns(m * m, 0), inverse(m * m, 0), diagonal(m), row(m), known(m);  // columns of G
+    for (size_t i = 0; i < m; ++i) {
+        const uint8_t site = mSites[i + kCorners];
+        for (size_t j = 0; j <= i; ++j) {
+            const uint8_t other = mSites[j + kCorners];
+            double sum = siteKernel(site, other);
+            for (uint8_t q = 0; q < kCorners; ++q) {
+                sum -= shares[i][q] * siteKernel(q, other);
+                sum -= shares[j][q] * cornerValues[i][q];
             }
-            for (int k = 0; k < j; ++k) sum -= g[at(i, k)] * g[at(j, k)];
-            if (i == j) {
-                TESSERA_CHECK(sum > 0);  // the sites differ
-                g[at(i, i)] = std::sqrt(sum);
-            } else {
-                g[at(i, j)] = sum / g[at(j, j)];
-            }
+            row[j] = sum;
         }
+        for (size_t k = 0; k < i; ++k) {
+            double* column = &columns[k * m];
+            column[i] = row[k] / diagonal[k];
+            for (size_t j = k + 1; j <= i; ++j) row[j] -= column[i] * column[j];
+            known[k] = -column[i];
+        }
+        TESSERA_CHECK(row[i] > 0);  // the sites differ
+        diagonal[i] = std::sqrt(row[i]);
+        double* inverted = &inverse[i * m];
+        inverted[i] = 1;
+        addRows({known.data(), i}, inverse.data(), m, {inverted, i});
+        for (size_t j = 0; j <= i; ++j) inverted[j] /= diagonal[i];
     }
-    for (int k = 0; k < m; ++k)
-        for (int i = 0; i <= k; ++i) {
-            double sum = i == k ? 1 : 0;
-            for (int j = i; j < k; ++j) sum -= g[at(k, j)] * inverse[at(j, i)];
-            inverse[at(k, i)] = sum / g[at(k, k)];
-        }
-    for (int k = 0; k < m; ++k) mEnergies[size_t(k + kCorners)] = 1 / (g[at(k, k)] * g[at(k, k)]);
-    for (int k = 0; k < m; ++k)
-        for (int i = 0; i <= k; ++i) {
-            const double factor = inverse[at(k, i)] / g[at(k, k)];
-            const int column = k + kCorners;
-            coefficient(kPolynomials + kCorners + i, column) += factor;
+    for (size_t k = 0; k < m; ++k) {
+        mEnergies[k + kCorners] = 1 / (diagonal[k] * diagonal[k]);
+        const int column = int(k) + kCorners;
+        for (size_t i = 0; i <= k; ++i) {
+            const double factor = inverse[k * m + i] / diagonal[k];
+            coefficient(kPolynomials + kCorners + int(i), column) += factor;
             for (int j = 0; j < kCorners; ++j) {
-                coefficient(kPolynomials + j, column) -= factor * shares[size_t(i)][j];
-                for (int row = 0; row < kPolynomials; ++row)
-                    coefficient(row, column) -=
-                        factor * cornerValues[size_t(i)][j] * kBarycentric[size_t(j)][size_t(row)];
+                coefficient(kPolynomials + j, column) -= factor * shares[i][j];
+                for (int r = 0; r < kPolynomials; ++r)
+                    coefficient(r, column) -=
+                        factor * cornerValues[i][j] * kBarycentric[size_t(j)][size_t(r)];
             }
         }
+    }
+}
+
+template <class Take>
+void NewtonBasis::combine(const double* terms, size_t stride, size_t points, Take&& take) const {
+    const size_t n = mSites.size();
+    std::array<double, kFunctionsAtOnce * kBlock> values{};
+    for (size_t k = 0; k < n; k += kFunctionsAtOnce) {
+        const size_t end = std::min(k + kFunctionsAtOnce, n);
+        // A function has no coefficients at later centres.
+        multiplyFour({&mCoefficients[k], mStride, 1}, terms, stride, kPolynomials + end, values.data(),
+                     kBlock, points);
+        for (size_t f = k; f < end; ++f) take(f, &values[(f - k) * kBlock]);
+    }
 }
 
 void NewtonBasis::evaluate(const float* x, const float* y, size_t count, float* out, size_t stride) const {
     TESSERA_CHECK(count <= stride);
-    constexpr size_t kBlock = 64, kTile = 8;  // points whose kernels the nearest cache holds; at once
-    constexpr size_t kFunctions = 4;          // at once
-    const size_t n = mSites.size();
     // What the coefficients are of: 1, x, y, and the kernels about the centres.
-    std::vector<double> terms((kPolynomials + n) * kBlock, 0);
-    std::array<double, kFunctions * kBlock> values{};
+    std::vector<double> terms((kPolynomials + mSites.size()) * kBlock, 0);
     for (size_t first = 0; first < count; first += kBlock) {
         const size_t points = std::min(kBlock, count - first);
         for (size_t i = 0; i < points; ++i) {
@@ -112,44 +136,42 @@ void NewtonBasis::evaluate(const float* x, const float* y, size_t count, float* 
             terms[2 * kBlock + i] = double(y[first + i]);
         }
         evaluateKernels(mCentres, x + first, y + first, points, &terms[kPolynomials * kBlock], kBlock);
-        // A function has no coefficients at later centres, the first ones none but the polynomial's.
-        for (size_t k = 0; k < n; k += kFunctions) {
-            multiplyFour({&mCoefficients[k], mStride, 1}, terms.data(), kBlock,
-                         kPolynomials + std::min(k + kFunctions, n), values.data(), kBlock,
-                         (points + kTile - 1) / kTile * kTile);
-            for (size_t f = k; f < std::min(k + kFunctions, n); ++f)
-                for (size_t i = 0; i < points; ++i)
-                    out[f * stride + first + i] = float(values[(f - k) * kBlock + i]);
-        }
+        combine(terms.data(), kBlock, roundUp(points), [&](size_t k, const double* values) {
+            for (size_t i = 0; i < points; ++i) out[k * stride + first + i] = float(values[i]);
+        });
     }
 }
 
-void NewtonBasis::evaluateWithDerivatives(glm::dvec2 at, double* values, double* alongX,
-                                          double* alongY) const {
+void NewtonBasis::evaluateWithDerivatives(const float* x, const float* y, size_t count, double* values,
+                                          double* alongX, double* alongY, size_t stride) const {
+    TESSERA_CHECK(count <= stride && stride % kPointsAtOnce == 0);
     const size_t n = mSites.size();
-    constexpr size_t kMost = kCentreSites + kPolynomials;
-    std::array<double, kMost> f{1, at.x, at.y}, fx{0, 1, 0}, fy{0, 0, 1};
-    for (size_t i = 0; i < n; ++i) {
-        const glm::dvec2 d = at - mCentres[i];
-        const double q = d.x * d.x + d.y * d.y;
-        // phi = q log(q) / 2, so grad phi = (log q + 1) d; 0 at the centre.
-        const double slope = q > 0 ? std::log(q) + 1 : 0;
-        f[kPolynomials + i] = tpsKernel(q);
-        fx[kPolynomials + i] = slope * d.x;
-        fy[kPolynomials + i] = slope * d.y;
+    std::vector<double> f((kPolynomials + n) * stride, 0), fx(f), fy(f);
+    for (size_t i = 0; i < count; ++i) {
+        f[i] = fx[stride + i] = fy[2 * stride + i] = 1;
+        f[stride + i] = double(x[i]);
+        f[2 * stride + i] = double(y[i]);
     }
-    const auto combine = [&](const std::array<double, kMost>& terms, double* sums) {
-        std::fill_n(sums, n, 0);
-        addRows({terms.data(), kPolynomials + kCorners}, mCoefficients.data(), mStride, {sums, n});
-        // From here on a row has coefficients of its own function and the later ones alone.
-        constexpr size_t kRows = 4;
-        for (size_t i = kCorners; i < n; i += kRows)
-            addRows({&terms[kPolynomials + i], std::min(kRows, n - i)},
-                    &mCoefficients[(kPolynomials + i) * mStride + i], mStride, {sums + i, n - i});
-    };
-    combine(f, values);
-    combine(fx, alongX);
-    combine(fy, alongY);
+    evaluateKernels(mCentres, x, y, count, &f[kPolynomials * stride], stride);
+    for (size_t j = 0; j < n; ++j) {
+        const size_t row = (kPolynomials + j) * stride;
+        for (size_t i = 0; i < count; ++i) {
+            const double dx = double(x[i]) - mCentres[j].x, dy = double(y[i]) - mCentres[j].y;
+            const double q = dx * dx + dy * dy;
+            // phi = q log(q) / 2, so grad phi = (log q + 1) d; 0 at the centre.
+            const double slope = q > 0 ? 2 * f[row + i] / q + 1 : 0;
+            fx[row + i] = slope * dx;
+            fy[row + i] = slope * dy;
+        }
+    }
+    for (const auto& [terms, out] : {std::pair(&f, values), std::pair(&fx, alongX), std::pair(&fy, alongY)})
+        for (size_t first = 0; first < count; first += kBlock) {
+            const size_t points = std::min(kBlock, count - first);
+            combine(terms->data() + first, stride, roundUp(points),
+                    [&, out = out](size_t k, const double* from) {
+                        std::copy_n(from, points, out + k * stride + first);
+                    });
+        }
 }
 
 PatchSpline NewtonBasis::spline(std::span<const std::span<const double>> factors) const {

@@ -29,8 +29,10 @@ class NewtonBasis {
 
     // The functions at `count` points of the domain, rounded: out[k * stride + i] is function k at point i.
     void evaluate(const float* x, const float* y, size_t count, float* out, size_t stride) const;
-    // The functions and their derivatives along the domain's axes at one point.
-    void evaluateWithDerivatives(glm::dvec2 at, double* values, double* alongX, double* alongY) const;
+    // The functions and their derivatives along the domain's axes, likewise, unrounded; `stride` is a
+    // multiple of 8.
+    void evaluateWithDerivatives(const float* x, const float* y, size_t count, double* values, double* alongX,
+                                 double* alongY, size_t stride) const;
 
     // The spline with these factors, for each channel of its first functions (at least 3).
     PatchSpline spline(std::span<const std::span<const double>> factors) const;
@@ -39,6 +41,11 @@ class NewtonBasis {
     // Coefficient `row` of function k: b0, b1, b2, then the alphas.
     double& coefficient(int row, int k) { return mCoefficients[size_t(row) * mStride + size_t(k)]; }
     double coefficient(int row, int k) const { return mCoefficients[size_t(row) * mStride + size_t(k)]; }
+
+    // Functions from `terms`, which are what the coefficients are of, at some points: row by row, `stride`
+    // numbers apart, `points` a multiple of 8. Calls take(k, row) with each function's values.
+    template <class Take>
+    void combine(const double* terms, size_t stride, size_t points, Take&& take) const;
 
     std::vector<uint8_t> mSites;
     std::vector<glm::dvec2> mCentres;

@@ -104,7 +104,8 @@ class EquationBuilder {
         return m.patches[p].scales;
     }
     void evaluateFactors(uint32_t p, const float* x, const float* y, size_t count, float* out) const;
-    void evaluateSlopes(uint32_t p, glm::dvec2 at, double* values, double* alongX, double* alongY) const;
+    struct Slopes;
+    void evaluateSlopes(uint32_t p, Slopes& slopes) const;
     void reach(const Rect& box) {
         mReach.min = glm::min(mReach.min, box.min);
         mReach.max = glm::max(mReach.max, box.max);
@@ -145,19 +146,32 @@ void EquationBuilder::evaluateFactors(uint32_t p, const float* x, const float* y
     evaluateSplines(mMesh.spline(PatchId(p)), mMesh.channels(), x, y, count, planes);
 }
 
-void EquationBuilder::evaluateSlopes(uint32_t p, glm::dvec2 at, double* values, double* alongX,
-                                     double* alongY) const {
+// Factors and their derivatives along the domain's axes at points of one side of a patch.
+struct EquationBuilder::Slopes {
+    static constexpr size_t kStride = 24;
+    size_t count = 0;
+    std::array<float, kStride> x{}, y{};
+    std::vector<double> value, alongX, alongY;  // of factor k at point i: k * kStride + i
+};
+
+void EquationBuilder::evaluateSlopes(uint32_t p, Slopes& slopes) const {
+    const size_t numbers = factorCount(p) * Slopes::kStride;
+    for (auto* out : {&slopes.value, &slopes.alongX, &slopes.alongY}) out->resize(numbers);
     if (!held(p)) {
-        m.bases[p].evaluateWithDerivatives(at, values, alongX, alongY);
+        m.bases[p].evaluateWithDerivatives(slopes.x.data(), slopes.y.data(), slopes.count,
+                                           slopes.value.data(), slopes.alongX.data(), slopes.alongY.data(),
+                                           Slopes::kStride);
         return;
     }
     const PatchSpline& spline = mMesh.spline(PatchId(p));
-    for (int c = 0; c < mMesh.channels(); ++c) {
-        const glm::dvec2 slope = splineGradient(spline, c, at);
-        values[c] = evaluateSpline(spline, c, at);
-        alongX[c] = slope.x;
-        alongY[c] = slope.y;
-    }
+    for (int c = 0; c < mMesh.channels(); ++c)
+        for (size_t i = 0; i < slopes.count; ++i) {
+            const glm::dvec2 at(slopes.x[i], slopes.y[i]), slope = splineGradient(spline, c, at);
+            const size_t number = size_t(c) * Slopes::kStride + i;
+            slopes.value[number] = evaluateSpline(spline, c, at);
+            slopes.alongX[number] = slope.x;
+            slopes.alongY[number] = slope.y;
+        }
 }
 
 // Whether cells of a held patch may be those of others too.
@@ -290,31 +304,44 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
     const bool reversed = HalfedgeMesh::halfedge(HalfedgeMesh::edge(h)) != h;
     const BezierTriangle t = toPixels(mMesh.controlPoints(p));
     const BezierCurve curve = toPixels(mMesh.controlPoints(HalfedgeMesh::halfedge(HalfedgeMesh::edge(h))));
+    const auto alongEdge = [&](uint32_t i) { return double(i) / double(samples - 1); };
+    const auto pointAt = [&](uint32_t i) {
+        Barycentric b(0);
+        const double s = reversed ? 1 - alongEdge(i) : alongEdge(i);
+        b[side] = 1 - s;
+        b[(side + 1) % 3] = s;
+        return b;
+    };
+    Slopes slopes;
+    slopes.count = samples;
+    for (uint32_t i = 0; i < samples; ++i) {
+        const glm::dvec2 at = domainPoint(pointAt(i));
+        slopes.x[i] = float(at.x);
+        slopes.y[i] = float(at.y);
+    }
+    evaluateSlopes(p.index, slopes);
     const size_t n = factorCount(p.index);
-    std::vector<double> value(n), dx(n), dy(n);
     std::vector<float> row(n);
     for (uint32_t i = 0; i < samples; ++i) {
-        const double along = double(i) / double(samples - 1), s = reversed ? 1 - along : along;
         const double share = seam.length(i * m.seamStride, m.seamStride);
         const double w0 = sign * std::sqrt(weights.colour * share);
         const double w1 = sign * std::sqrt(weights.gradient * share);
-        Barycentric b(0);
-        b[side] = 1 - s;
-        b[(side + 1) % 3] = s;
-        evaluateSlopes(p.index, domainPoint(b), value.data(), dx.data(), dy.data());
-        for (size_t k = 0; k < n; ++k) row[k] = float(w0 * value[k]);
+        for (size_t k = 0; k < n; ++k) row[k] = float(w0 * slopes.value[k * Slopes::kStride + i]);
         parts.add(seam.firstRow + m.seamStride * i, p.index, row, scales(p.index));
         if (m.seamStride == 1) continue;
         // The step in the domain that goes a pixel along the edge's normal: J^-1 normal.
-        const PatchPoint at = evaluateWithDerivatives(t, b);
+        const PatchPoint at = evaluateWithDerivatives(t, pointAt(i));
         const double det = cross(at.dv, at.dw);
-        const glm::dvec2 tangent = curve.derivative(along);
+        const glm::dvec2 tangent = curve.derivative(alongEdge(i));
         const double speed = std::sqrt(tangent.x * tangent.x + tangent.y * tangent.y);
         const glm::dvec2 normal = glm::dvec2(-tangent.y, tangent.x) / std::max(1e-9, speed);
         const double dv = det > 1e-9 ? cross(normal, at.dw) / det : 0;
         const double dw = det > 1e-9 ? cross(at.dv, normal) / det : 0;
         const double stepX = dv + .5 * dw, stepY = kDomainHeight * dw;
-        for (size_t k = 0; k < n; ++k) row[k] = float(w1 * (dx[k] * stepX + dy[k] * stepY));
+        for (size_t k = 0; k < n; ++k) {
+            const size_t number = k * Slopes::kStride + i;
+            row[k] = float(w1 * (slopes.alongX[number] * stepX + slopes.alongY[number] * stepY));
+        }
         parts.add(seam.firstRow + m.seamStride * i + 1, p.index, row, scales(p.index));
     }
 }
@@ -324,6 +351,7 @@ void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
     constexpr double kSamplesPerPx = .7;
     // As many as sites along an edge: fewer points would let colours swing between them.
     constexpr int kLeast = kSiteSubdivisions + 1, kMost = kSiteSubdivisions + 5;
+    static_assert(kMost <= Slopes::kStride);
     std::vector<HalfedgeId> halfedges;  // of m.seams
     uint32_t rows = m.cellRows;
     m.seamStride = weights.gradient > 0 ? 2 : 1;
