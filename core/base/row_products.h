@@ -29,4 +29,12 @@ void multiplyFour(const MatrixView& left, const double* right, size_t rightStrid
 std::vector<double> lowerProducts(std::span<const double> left, std::span<const double> right, size_t rows,
                                   size_t length);
 
+// The sums over i, from 0 on, of rows[i * stride + k] * rows[i * stride + j], for k and j < columns: a
+// symmetric matrix. There are `count` rows; stride is gramStride(columns).
+constexpr size_t gramStride(size_t columns) {
+    constexpr size_t kStep = 16;
+    return (columns + kStep - 1) / kStep * kStep;
+}
+std::vector<float> gram(std::span<const float> rows, size_t count, size_t columns);
+
 }  // namespace tessera

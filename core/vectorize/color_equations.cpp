@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/base/parallel.h"
+#include "core/base/row_products.h"
 #include "core/mesh/patch_query.h"
 #include "core/vectorize/patch_cells.h"
 
@@ -240,8 +241,15 @@ void EquationBuilder::addPatch(PatchId p, const PatchCells& cells, Parts& parts)
     const auto functions = Eigen::Index(factorCount(p.index));
     Rows values(functions, Eigen::Index(samples));
     evaluateFactors(p.index, cells.x.data(), cells.y.data(), samples, values.data());
-    Eigen::MatrixXf means = Eigen::MatrixXf::Zero(functions, count);
-    for (size_t i = 0; i < samples; ++i) means.col(cells.cellOf[i]) += values.col(Eigen::Index(i));
+    // By cell, its functions in a row.
+    const auto stride = Eigen::Index(gramStride(size_t(functions)));
+    Eigen::MatrixXf padded = Eigen::MatrixXf::Zero(stride, count);
+    auto means = padded.topRows(functions);
+    constexpr Eigen::Index kTogether = 16;  // a cache line of floats
+    for (Eigen::Index first = 0; first < functions; first += kTogether)
+        for (size_t i = 0; i < samples; ++i)
+            for (Eigen::Index k = first; k < std::min(first + kTogether, functions); ++k)
+                means(k, cells.cellOf[i]) += values(k, Eigen::Index(i));
 
     // Cells that are not the patch's alone.
     std::vector<uint8_t> shared(cells.cells.size());
@@ -265,10 +273,7 @@ void EquationBuilder::addPatch(PatchId p, const PatchCells& cells, Parts& parts)
     }
     addFeet(std::move(feet), parts);
     if (held(p.index)) return;
-    Eigen::MatrixXf gram = Eigen::MatrixXf::Zero(patch.count, patch.count);
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(means);
-    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-    Eigen::Map<Eigen::MatrixXf>(patch.gram.data(), patch.count, patch.count) = gram;
+    patch.gram = gram({padded.data(), size_t(padded.size())}, size_t(count), size_t(functions));
     const double area = std::max(1.0, covered);
     for (int k = 0; k < patch.count; ++k)
         patch.damping[size_t(k)] = kRidge * area + kBending / area * m.bases[p.index].energy(k);

@@ -17,6 +17,10 @@ size_t padded(size_t columns) {
     return (columns + kLanes - 1) / kLanes * kLanes;
 }
 
+int16_t nearest(float x) {
+    return int16_t(x + std::copysign(.5F, x));
+}
+
 // The same sum with and without vector instructions: one for each lane, then those.
 TESSERA_VECTOR_CLONES
 void multiplyRows(const int16_t* entries, const float* scales, size_t rows, size_t stride, const float* x,
@@ -51,8 +55,7 @@ void PackedRows::push(std::span<const float> row, std::span<const float> columnS
     for (size_t k = 0; k < row.size(); ++k) most = std::max(most, std::abs(row[k]) / columnScales[k]);
     const float scale = most > 0 ? most / 32767 : 1;
     mScales.push_back(scale);
-    for (size_t k = 0; k < row.size(); ++k)
-        mEntries.push_back(int16_t(std::lround(row[k] / (columnScales[k] * scale))));
+    for (size_t k = 0; k < row.size(); ++k) mEntries.push_back(nearest(row[k] / (columnScales[k] * scale)));
     mEntries.resize(mScales.size() * mStride, 0);
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/base/parallel.h"
+#include "core/base/row_products.h"
 #include "core/mesh/colour_basis.h"
 #include "core/vectorize/color_equations.h"
 
@@ -40,12 +41,11 @@ double dot(const PatchVectors& a, const PatchVectors& b) {
     return sum;
 }
 
-// The rows' first `columns` columns, row after row in columns of the result.
-MatrixXf unpackedRows(const ColorEquations::Patch& patch, int columns) {
-    MatrixXf rows = MatrixXf::Zero(columns, Eigen::Index(patch.rows.size()));
+// The rows' first `columns` columns, row after row in columns of the result, which has gramStride of them.
+MatrixXf unpackedRows(const ColorEquations::Patch& patch, size_t columns) {
+    MatrixXf rows = MatrixXf::Zero(Eigen::Index(gramStride(columns)), Eigen::Index(patch.rows.size()));
     for (size_t i = 0; i < patch.rows.size(); ++i)
-        patch.rows.addTo(i, {patch.scales.data(), size_t(columns)},
-                         {rows.col(Eigen::Index(i)).data(), size_t(columns)});
+        patch.rows.addTo(i, {patch.scales.data(), columns}, {rows.col(Eigen::Index(i)).data(), columns});
     return rows;
 }
 Eigen::Map<const MatrixXf> gramOf(const ColorEquations::Patch& patch) {
@@ -87,17 +87,21 @@ class ChannelSystem {
                 const auto& patch = m.patches[p];
                 if (patch.count == 0) continue;
                 const int n = mTerms[p];
-                VectorXf targets(Eigen::Index(patch.rowIds.size())), rowWeights(targets.size());
+                VectorXf targets(Eigen::Index(patch.rowIds.size())), rootWeights(targets.size());
                 for (size_t i = 0; i < patch.rowIds.size(); ++i) {
-                    rowWeights(Eigen::Index(i)) = mWeights(patch.rowIds[i]);
+                    const float weight = mWeights(patch.rowIds[i]);
+                    rootWeights(Eigen::Index(i)) = std::sqrt(weight);
                     targets(Eigen::Index(i)) =
-                        mWeights(patch.rowIds[i]) * m.targets[size_t(channel) * m.rowCount + patch.rowIds[i]];
+                        weight * m.targets[size_t(channel) * m.rowCount + patch.rowIds[i]];
                 }
-                const MatrixXf rows = unpackedRows(patch, n);
+                MatrixXf rows = unpackedRows(patch, size_t(n));
                 mRight[p] = Eigen::Map<const VectorXd>(patch.moments.data() + channel * patch.count, n) +
-                            (rows * targets).cast<double>();
-                const MatrixXf own = rows * rowWeights.asDiagonal() * rows.transpose();
-                MatrixXd normal = gramOf(patch).topLeftCorner(n, n).cast<double>() + own.cast<double>();
+                            (rows.topRows(n) * targets).cast<double>();
+                rows *= rootWeights.asDiagonal();
+                const std::vector<float> own =
+                    gram({rows.data(), size_t(rows.size())}, patch.rows.size(), size_t(n));
+                MatrixXd normal = gramOf(patch).topLeftCorner(n, n).cast<double>() +
+                                  Eigen::Map<const MatrixXf>(own.data(), n, n).cast<double>();
                 normal.diagonal() += dampingOf(patch).head(n);
                 mFactors[p] = normal.llt().matrixLLT().cast<float>();
             }

@@ -58,5 +58,22 @@ TEST(RowProducts, FourRowsWhateverTheSteps) {
     }
 }
 
+TEST(RowProducts, AGramMatrix) {
+    for (const size_t columns : {1, 15, 16, 33})
+        for (const size_t count : {1, 6}) {
+            const size_t stride = gramStride(columns);
+            std::vector<float> rows(count * stride, 9);  // what is beyond the columns counts for nothing
+            const auto numbers = randomNumbers(rows.size());
+            for (size_t i = 0; i < rows.size(); ++i)
+                if (i % stride < columns) rows[i] = float(numbers[i]);
+            std::vector<float> expected(columns * columns, 0);
+            for (size_t k = 0; k < columns; ++k)
+                for (size_t j = 0; j < columns; ++j)
+                    for (size_t i = 0; i < count; ++i)
+                        expected[k * columns + j] += rows[i * stride + k] * rows[i * stride + j];
+            EXPECT_EQ(gram(rows, count, columns), expected) << count << " rows of " << columns;
+        }
+}
+
 }  // namespace
 }  // namespace tessera
