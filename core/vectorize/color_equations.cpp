@@ -7,8 +7,10 @@
 #include <glm/common.hpp>
 #include <span>
 
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/row_products.h"
+#include "core/mesh/newton_basis.h"
 #include "core/mesh/patch_query.h"
 #include "core/vectorize/patch_cells.h"
 
@@ -69,15 +71,15 @@ class EquationBuilder {
                     int samplesPerSide)
         : mMesh(mesh), mPicture(picture), mSide(samplesPerSide), mBlur(mesh) {
         m.patches.resize(choices.size());
-        m.bases.reserve(choices.size());
+        mBases.reserve(choices.size());
         static constexpr uint8_t kCorners[] = {0, 1, 2};
         static const NewtonBasis kNone(kCorners);
         for (uint32_t p = 0; p < choices.size(); ++p) {
             if (!mesh.connectivity().alive(PatchId(p)) || choices[p].sites.empty()) {
-                m.bases.push_back(kNone);
+                mBases.push_back(kNone);
                 continue;
             }
-            m.bases.emplace_back(choices[p].sites);
+            mBases.emplace_back(choices[p].sites);
             reach(controlBounds(mesh, PatchId(p)));
             auto& patch = m.patches[p];
             patch.count = int(choices[p].sites.size());
@@ -85,7 +87,7 @@ class EquationBuilder {
             patch.gram.assign(count * count, 0);
             patch.moments.assign(count * size_t(mesh.channels()), 0);
             patch.damping.assign(count, kRidge);
-            patch.scales = largestValues(m.bases.back());
+            patch.scales = largestValues(mBases.back());
         }
     }
 
@@ -132,6 +134,7 @@ class EquationBuilder {
     int mSide;
     EdgeBlur mBlur;
     Rect mReach{glm::dvec2(HUGE_VAL), glm::dvec2(-HUGE_VAL)};  // of the patches that are not held
+    std::vector<NewtonBasis> mBases;                           // by patch id
     std::vector<Parts> mParts;
 };
 
@@ -139,7 +142,7 @@ class EquationBuilder {
 void EquationBuilder::evaluateFactors(uint32_t p, const float* x, const float* y, size_t count,
                                       float* out) const {
     if (!held(p)) {
-        m.bases[p].evaluate(x, y, count, out, count);
+        mBases[p].evaluate(x, y, count, out, count);
         return;
     }
     float* planes[kMaxChannels] = {};
@@ -159,9 +162,8 @@ void EquationBuilder::evaluateSlopes(uint32_t p, Slopes& slopes) const {
     const size_t numbers = factorCount(p) * Slopes::kStride;
     for (auto* out : {&slopes.value, &slopes.alongX, &slopes.alongY}) out->resize(numbers);
     if (!held(p)) {
-        m.bases[p].evaluateWithDerivatives(slopes.x.data(), slopes.y.data(), slopes.count,
-                                           slopes.value.data(), slopes.alongX.data(), slopes.alongY.data(),
-                                           Slopes::kStride);
+        mBases[p].evaluateWithDerivatives(slopes.x.data(), slopes.y.data(), slopes.count, slopes.value.data(),
+                                          slopes.alongX.data(), slopes.alongY.data(), Slopes::kStride);
         return;
     }
     const PatchSpline& spline = mMesh.spline(PatchId(p));
@@ -276,7 +278,7 @@ void EquationBuilder::addPatch(PatchId p, const PatchCells& cells, Parts& parts)
     patch.gram = gram({padded.data(), size_t(padded.size())}, size_t(count), size_t(functions));
     const double area = std::max(1.0, covered);
     for (int k = 0; k < patch.count; ++k)
-        patch.damping[size_t(k)] = kRidge * area + kBending / area * m.bases[p.index].energy(k);
+        patch.damping[size_t(k)] = kRidge * area + kBending / area * mBases[p.index].energy(k);
     Eigen::Map<Eigen::MatrixXd>(patch.moments.data(), patch.count, mMesh.channels()) =
         (means * targets).cast<double>();
 }
@@ -412,6 +414,9 @@ void EquationBuilder::gather(ColorEquations::Patch& patch, const std::vector<Par
 
 // Brings the parts together: rows numbered densely, each patch's factors side by side.
 void EquationBuilder::finish(const Progress& progress) {
+    // The bases were made by one thread; what others allocate from here on would not go where they were.
+    mBases = {};
+    releaseFreeMemory();
     std::vector<std::vector<Parts::Chunk*>> chunks(m.patches.size());
     std::vector<uint32_t> number;  // by id
     uint32_t ids = 0;

@@ -8,7 +8,6 @@
 
 #include "core/base/progress.h"
 #include "core/mesh/edge_blur.h"
-#include "core/mesh/newton_basis.h"
 #include "core/mesh/patch_mesh.h"
 #include "core/vectorize/fit_picture.h"
 #include "core/vectorize/packed_rows.h"
@@ -16,9 +15,10 @@
 
 namespace tessera {
 
-// The unknowns are the Newton factors of each patch and channel; channels are independent of each other. An
-// equation of one patch alone goes into its Gram matrix. One of several patches (a cell across an edge or
-// near a blurred feature, a point of a seam) is a row, whose factors lie with the patches.
+// The unknowns are the Newton factors (core/mesh/newton_basis.h) of each patch and channel; channels are
+// independent of each other. An equation of one patch alone goes into its Gram matrix. One of several patches
+// (a cell across an edge or near a blurred feature, a point of a seam) is a row, whose factors lie with the
+// patches.
 struct ColorEquations {
     // Matrices lie row after row.
     struct Patch {
@@ -36,7 +36,6 @@ struct ColorEquations {
     };
 
     std::vector<Patch> patches;        // by patch id; count 0 where there is none
-    std::vector<NewtonBasis> bases;    // by patch id
     std::vector<uint32_t> firstEntry;  // by row, into entries
     std::vector<Entry> entries;
     size_t rowCount = 0;

@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/row_products.h"
 #include "core/mesh/colour_basis.h"
+#include "core/mesh/newton_basis.h"
 #include "core/vectorize/color_equations.h"
 
 namespace tessera {
@@ -273,19 +274,25 @@ class SeamWeightSearch {
     bool mKnown = false;
 };
 
-// Gives patches that are not held the splines of their factors; how many these are.
-size_t setSplines(PatchMesh& mesh, const ColorEquations& equations,
+// Gives patches that are not held the splines of their factors; how many terms these have. Bases are made
+// again: to keep them all from the equations on would take more memory than anything else.
+size_t setSplines(PatchMesh& mesh, const ColorEquations& equations, const std::vector<SiteChoice>& choices,
                   const std::array<PatchVectors, kMaxChannels>& factors) {
+    std::vector<PatchSpline> splines(equations.patches.size());
+    parallelFor(splines.size(), 16, [&](size_t begin, size_t end) {
+        for (size_t p = begin; p < end; ++p) {
+            if (equations.patches[p].count == 0) continue;
+            std::array<std::span<const double>, kMaxChannels> own;
+            for (size_t c = 0; c < size_t(mesh.channels()); ++c)
+                own[c] = {factors[c][p].data(), size_t(factors[c][p].size())};
+            splines[p] = NewtonBasis(choices[p].sites).spline({own.data(), size_t(mesh.channels())});
+        }
+    });
     size_t terms = 0;
     mesh.forEachPatch([&](PatchId p) {
         if (equations.patches[p.index].count == 0) return;
-        std::array<std::span<const double>, kMaxChannels> own;
-        for (int c = 0; c < mesh.channels(); ++c) {
-            const VectorXd& x = factors[size_t(c)][p.index];
-            own[size_t(c)] = {x.data(), size_t(x.size())};
-            terms += own[size_t(c)].size();
-        }
-        mesh.setSpline(p, equations.bases[p.index].spline({own.data(), size_t(mesh.channels())}));
+        for (int c = 0; c < mesh.channels(); ++c) terms += size_t(factors[size_t(c)][p.index].size());
+        mesh.setSpline(p, std::move(splines[p.index]));
     });
     return terms;
 }
@@ -330,7 +337,7 @@ Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vec
     }
     report.figures.push_back({"seam weight", seamWeight});
     mesh.setColourBasis(ColourBasis::Opponent);
-    const size_t terms = setSplines(mesh, equations, factors);
+    const size_t terms = setSplines(mesh, equations, choices, factors);
     report.figures.push_back({"terms", double(terms)});
     report.figures.push_back({"shared cells", double(equations.cellRows)});
     report.figures.push_back({"iterations", double(iterations)});
@@ -352,7 +359,7 @@ std::vector<PatchId> refitColors(PatchMesh& mesh, const FitPicture& picture,
         system.factorize(progress);
         factors[size_t(c)] = conjugateGradients(system, {}, kTolerance, iterations, progress);
     }
-    setSplines(mesh, equations, factors);
+    setSplines(mesh, equations, choices, factors);
     std::vector<PatchId> solved;
     for (uint32_t p = 0; p < equations.patches.size(); ++p)
         if (equations.patches[p].count > 0) solved.push_back(PatchId(p));
