@@ -380,24 +380,30 @@ double Refiner::flipCost(EdgeId e) const {
     return one + error(second) - before * (1 - kGain);
 }
 
-size_t Refiner::flip() {
+template <class Cost>
+std::vector<EdgeId> Refiner::edgesByCost(Cost&& cost) const {
     std::vector<double> costs(m.mesh.edgeCapacity(), kNever);
     parallelFor(costs.size(), 32, [&](size_t begin, size_t end) {
         for (size_t e = begin; e < end && !mStop.stop_requested(); ++e)
-            if (m.mesh.alive(EdgeId(uint32_t(e)))) costs[e] = flipCost(EdgeId(uint32_t(e)));
+            if (m.mesh.alive(EdgeId(uint32_t(e)))) costs[e] = cost(EdgeId(uint32_t(e)));
     });
-    std::vector<uint32_t> order;
+    std::vector<EdgeId> order;
     for (uint32_t e = 0; e < costs.size(); ++e)
-        if (costs[e] < 0) order.push_back(e);
-    std::sort(order.begin(), order.end(),
-              [&](uint32_t a, uint32_t b) { return costs[a] != costs[b] ? costs[a] < costs[b] : a < b; });
+        if (costs[e] < 0) order.emplace_back(e);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](EdgeId a, EdgeId b) { return costs[a.index] < costs[b.index]; });
+    return order;
+}
+
+size_t Refiner::flip() {
+    const std::vector<EdgeId> order = edgesByCost([&](EdgeId e) { return flipCost(e); });
     std::vector<uint8_t> touched(m.mesh.faceCapacity(), 0);
     std::vector<FaceId> changed;
-    for (const uint32_t e : order) {
-        const HalfedgeId h = HalfedgeMesh::halfedge(EdgeId(e));
+    for (const EdgeId e : order) {
+        const HalfedgeId h = HalfedgeMesh::halfedge(e);
         const FaceId f = m.mesh.face(h), g = m.mesh.face(HalfedgeMesh::twin(h));
-        if (touched[f.index] || touched[g.index] || !m.mesh.canFlip(EdgeId(e))) continue;
-        m.mesh.flip(EdgeId(e));
+        if (touched[f.index] || touched[g.index] || !m.mesh.canFlip(e)) continue;
+        m.mesh.flip(e);
         touched[f.index] = touched[g.index] = 1;
         changed.insert(changed.end(), {f, g});
     }
@@ -433,29 +439,20 @@ double Refiner::splitCost(EdgeId e) const {
 }
 
 void Refiner::splitTo(size_t faces) {
-    std::vector<double> costs(m.mesh.edgeCapacity(), kNever);
-    parallelFor(costs.size(), 32, [&](size_t begin, size_t end) {
-        for (size_t e = begin; e < end && !mStop.stop_requested(); ++e)
-            if (m.mesh.alive(EdgeId(uint32_t(e)))) costs[e] = splitCost(EdgeId(uint32_t(e)));
-    });
-    std::vector<uint32_t> order;
-    for (uint32_t e = 0; e < costs.size(); ++e)
-        if (costs[e] < 0) order.push_back(e);
-    std::sort(order.begin(), order.end(),
-              [&](uint32_t a, uint32_t b) { return costs[a] != costs[b] ? costs[a] < costs[b] : a < b; });
+    const std::vector<EdgeId> order = edgesByCost([&](EdgeId e) { return splitCost(e); });
     std::vector<uint8_t> touched(m.mesh.faceCapacity(), 0);
     std::vector<FaceId> changed;
-    for (const uint32_t e : order) {
+    for (const EdgeId e : order) {
         if (m.mesh.faceCount() >= faces) break;
-        const HalfedgeId h = HalfedgeMesh::halfedge(EdgeId(e));
+        const HalfedgeId h = HalfedgeMesh::halfedge(e);
         bool free = true;
         for (const HalfedgeId s : {h, HalfedgeMesh::twin(h)})
             if (m.mesh.face(s).valid()) free = free && !touched[m.mesh.face(s).index];
         if (!free) continue;
-        const bool border = m.mesh.onBorder(EdgeId(e));
-        m.positions.push_back(middle(EdgeId(e)));
+        const bool border = m.mesh.onBorder(e);
+        m.positions.push_back(middle(e));
         m.kinds.push_back(border ? VertexKind::Border : VertexKind::Interior);
-        const VertexId v = m.mesh.split(EdgeId(e));
+        const VertexId v = m.mesh.split(e);
         touched.resize(m.mesh.faceCapacity(), 0);
         m.mesh.forEachOutgoing(v, [&](HalfedgeId out) {
             if (!m.mesh.face(out).valid()) return;

@@ -88,6 +88,9 @@ class Refiner {
                    double& before) const;
     Option bestCollapse(VertexId u) const;
     void collapse(HalfedgeId h, std::vector<FaceId>& changed);
+    // The edges at which `cost` is below 0, the cheapest first.
+    template <class Cost>
+    std::vector<EdgeId> edgesByCost(Cost&& cost) const;
     double flipCost(EdgeId e) const;
     double splitCost(EdgeId e) const;
     LatticePoint middle(EdgeId e) const;
