@@ -18,6 +18,7 @@
 #include "ui/dialogs/recovery_dialog.h"
 #include "ui/gl_drawer.h"
 #include "ui/message_bar.h"
+#include "ui/opening_card.h"
 #include "ui/panels/history_panel.h"
 #include "ui/panels/navigator.h"
 #include "ui/panels/palette_panel.h"
@@ -158,8 +159,10 @@ void MainWindow::connectWorkspace() {
         mStatus->showJob(mWorkspace.currentJob());
         // The file that it was wished for could not be opened.
         if (!mWorkspace.running(JobKind::Open)) mVectorizeWhenOpen = false;
+        showBeginning();
         updateActions();
     });
+    connect(mOpening, &OpeningCard::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::zoomClicked, this, [this] { mCanvas->zoomTo(1); });
     connect(mTabs, &QTabBar::currentChanged, this, [this](int tab) {
@@ -267,13 +270,20 @@ void MainWindow::welcome(DocumentSession& session) {
 
 void MainWindow::showSession() {
     const DocumentSession* session = mWorkspace.session();
-    mStart->setVisible(!session);
+    showBeginning();
     const size_t features = session ? featureCount(session->document().mesh) : 0;
     mStatus->showCounts(session, features);
     mPanel->showSession(session, features);
     showView();
     updateActions();
     updateTitle();
+}
+
+void MainWindow::showBeginning() {
+    const bool nothing = !mWorkspace.session();
+    const Job* job = nothing ? mWorkspace.running(JobKind::Open) : nullptr;
+    mOpening->showJob(job);
+    mStart->setVisible(nothing && !job);
 }
 
 void MainWindow::showTabs() {
