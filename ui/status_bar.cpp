@@ -12,13 +12,13 @@
 #include <cmath>
 
 #include "app/document_session.h"
-#include "app/jobs/job.h"
 
 namespace tessera {
 
 namespace {
 
 constexpr int kProgressSteps = 1000;
+constexpr int kAgainMs = 1000;
 constexpr int kHeightPx = 32;
 constexpr int kLeastTextPx = 60;
 
@@ -101,6 +101,7 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     addWidget(mJob, 1);
     mJob->hide();
     connect(mCancel, &QPushButton::clicked, this, &StatusBar::cancelRequested);
+    connect(&mAgain, &QTimer::timeout, this, [this] { showJob(mShown); });
 
     mSelected = new QLabel;
     mRenderer = new QLabel;
@@ -129,8 +130,10 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
 }
 
 void StatusBar::showJob(const Job* job) {
+    mShown = job;
     mJob->setVisible(job);
-    if (!job) return;
+    if (!job) return mAgain.stop();
+    mAgain.start(kAgainMs);
     QString text = job->title();
     if (job->stopRequested())
         text += tr(" — stopping…");
