@@ -207,7 +207,7 @@ void MainWindow::connectPanels() {
     connect(mPanel, &VectorizePanel::draftWanted, this,
             [this] { mDrafts.want(mPanel->settings(mWorkspace.session())); });
     connect(mPanel, &VectorizePanel::draftDropped, &mDrafts, &DraftPreview::drop);
-    connect(mCanvas, &CanvasWidget::draftLeft, &mDrafts, &DraftPreview::drop);
+    connect(mCanvas, &CanvasWidget::draftLeft, this, &MainWindow::leaveDraft);
     connect(mCanvas, &CanvasWidget::draftPressed, this, &MainWindow::explainDraft);
     connect(&mDrafts, &DraftPreview::changed, this, &MainWindow::showDraft);
     mRecolour->setToolOptions(mTools);
@@ -392,6 +392,13 @@ void MainWindow::showDraft() {
     mCanvas->setDraft(draft);
     if (!draft) mMessages->hide();
     mPanel->showDraft(draft ? std::optional(draft->patchCount()) : std::nullopt);
+}
+
+void MainWindow::leaveDraft() {
+    mDrafts.drop();
+    // The number of patches goes back with the picture.
+    const DocumentSession* session = mWorkspace.session();
+    if (session && session->hasMesh()) mPanel->setPatches(session->document().settings.patches);
 }
 
 void MainWindow::explainDraft() {

@@ -97,6 +97,7 @@ class MainWindow : public QMainWindow {
     void showView();
     void startVectorize();
     void showDraft();
+    void leaveDraft();
     void explainDraft();
     void fitSelection();
     void changeBrush(double factor);

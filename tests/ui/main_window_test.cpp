@@ -154,6 +154,7 @@ TEST_F(MainWindowTest, DraftsFollowTheSliderUntilOneIsApplied) {
     ASSERT_TRUE(settled());
     EXPECT_EQ(button->text(), "Vectorize");
     EXPECT_EQ(difference(grab(), document), 0);
+    EXPECT_EQ(window->panel().settings(session()).patches, kPatches);
     drag(.5);
     QTest::mouseClick(button, Qt::LeftButton);
     ASSERT_TRUE(idle());
