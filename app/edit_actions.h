@@ -7,7 +7,8 @@
 namespace tessera {
 
 // All return what failed as one sentence, and then change nothing; no selection of the right kind is a
-// failure too (Usage).
+// failure too (Usage). Those that return a text do it to each of what is selected, or fail where none can be
+// edited; the text is one sentence about those that were left as they are, empty where there are none.
 
 // In one go; RecolourGesture is for sliders.
 Result<void> recolourSelection(DocumentSession& session, const QString& text, const Recolouring& how,
@@ -28,12 +29,13 @@ Result<void> resetShape(DocumentSession& session);
 Result<void> refitColours(DocumentSession& session);
 
 // Of the selected curves. Their vertices and handles do not count.
-Result<void> setFeature(DocumentSession& session, bool feature);
+Result<QString> setFeature(DocumentSession& session, bool feature);
 Result<void> setBlur(DocumentSession& session, double sigmaStart, double sigmaEnd);
-Result<void> snapToFeature(DocumentSession& session);
+// Curves that follow each other move together where they can.
+Result<QString> snapToFeature(DocumentSession& session);
 // At the middle.
-Result<void> splitCurves(DocumentSession& session);
-Result<void> mergeCurves(DocumentSession& session);
-Result<void> splitPatches(DocumentSession& session);
+Result<QString> splitCurves(DocumentSession& session);
+Result<QString> mergeCurves(DocumentSession& session);
+Result<QString> splitPatches(DocumentSession& session);
 
 }  // namespace tessera

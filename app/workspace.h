@@ -84,8 +84,8 @@ class Workspace : public QObject {
 
     // The job to show: the one started last that still runs, or null.
     Job* currentJob() const { return mJobs.isEmpty() ? nullptr : mJobs.last().job; }
-    // Whether the current document has such a job; of kind Open: whether there is one at all.
-    bool running(JobKind kind) const { return find(kind, mCurrent); }
+    // The last job of this kind of the current document, or null; of kind Open: of all documents to come.
+    const Job* running(JobKind kind) const { return find(kind, mCurrent); }
     // Asks the current job to stop, unless it is a save, which is short and wanted.
     void cancel();
 

@@ -138,10 +138,10 @@ void Workspace::exportPicture(const ExportRequest& request) {
 }
 
 Job* Workspace::find(JobKind kind, const DocumentSession* session) const {
-    const auto found = std::find_if(mJobs.begin(), mJobs.end(), [&](const RunningJob& running) {
+    const auto found = std::find_if(mJobs.rbegin(), mJobs.rend(), [&](const RunningJob& running) {
         return running.job->kind() == kind && (kind == JobKind::Open || running.session == session);
     });
-    return found == mJobs.end() ? nullptr : found->job;
+    return found == mJobs.rend() ? nullptr : found->job;
 }
 
 void Workspace::cancel() {

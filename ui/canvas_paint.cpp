@@ -15,6 +15,7 @@ namespace {
 constexpr int kCheckPx = 8;
 constexpr double kGridFromScale = 8;
 constexpr double kLensPx = 110;
+constexpr double kTagTextPx = 12;
 const LineStyle kSelection{QColor(64, 169, 255), QColor(255, 255, 255, 235), 1.6, 3.8};
 const LineStyle kHighlight{QColor(255, 255, 255), QColor(0, 0, 0, 200), 1.8, 4.2};
 
@@ -33,6 +34,21 @@ void drawClipped(QPainter& painter, const QImage& image, const QRectF& area, con
     const QRectF target(area.left() + left * pixelX, area.top() + top * pixelY, source.width() * pixelX,
                         source.height() * pixelY);
     painter.drawImage(target, image, source);
+}
+
+// A word on dark ground, its corner nearest to `at` there: right of it, or left where `leftOf`.
+void drawTag(QPainter& painter, QPointF at, const QString& text, bool leftOf, double ratio) {
+    QFont font = painter.font();
+    font.setPixelSize(int(std::lround(kTagTextPx * ratio)));
+    painter.setFont(font);
+    const QFontMetricsF metrics(font);
+    QRectF box(at, QSizeF(metrics.horizontalAdvance(text) + 12 * ratio, metrics.height() + 4 * ratio));
+    if (leftOf) box.moveRight(at.x());
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(QColor(0, 0, 0, 150));
+    painter.drawRoundedRect(box, 4 * ratio, 4 * ratio);
+    painter.setPen(Qt::white);
+    painter.drawText(box, Qt::AlignCenter, text);
 }
 
 QRectF shownArea(const ViewTransform& view, const Frame& frame) {
@@ -86,8 +102,20 @@ void CanvasWidget::paintSplit(QPainter& painter) const {
     painter.setClipRect(QRectF(0, 0, x, deviceSize().height()), Qt::IntersectClip);
     paintPhoto(painter);
     painter.restore();
-    painter.fillRect(QRectF(x - 1.5 * ratio, 0, 3 * ratio, deviceSize().height()), QColor(0, 0, 0, 140));
-    painter.fillRect(QRectF(x - .5 * ratio, 0, ratio, deviceSize().height()), Qt::white);
+    const double height = deviceSize().height();
+    painter.fillRect(QRectF(x - 1.5 * ratio, 0, 3 * ratio, height), QColor(0, 0, 0, 140));
+    painter.fillRect(QRectF(x - .5 * ratio, 0, ratio, height), Qt::white);
+    painter.save();
+    painter.setRenderHint(QPainter::Antialiasing);
+    // What the line is dragged by, to the eye; it can be taken hold of anywhere.
+    painter.setPen(QPen(QColor(0, 0, 0, 140), ratio));
+    painter.setBrush(Qt::white);
+    painter.drawRoundedRect(QRectF(x - 3 * ratio, height / 2 - 18 * ratio, 6 * ratio, 36 * ratio), 3 * ratio,
+                            3 * ratio);
+    const double gap = 8 * ratio, top = std::max(0., mView.toScreen(QPointF(0, 0)).y()) + gap;
+    drawTag(painter, QPointF(x - gap, top), tr("Photo"), true, ratio);
+    drawTag(painter, QPointF(x + gap, top), tr("Vector image"), false, ratio);
+    painter.restore();
 }
 
 void CanvasWidget::paintLens(QPainter& painter) const {

@@ -18,6 +18,7 @@
 #include "ui/dialogs/recovery_dialog.h"
 #include "ui/gl_drawer.h"
 #include "ui/message_bar.h"
+#include "ui/opening_card.h"
 #include "ui/panels/history_panel.h"
 #include "ui/panels/navigator.h"
 #include "ui/panels/palette_panel.h"
@@ -158,8 +159,10 @@ void MainWindow::connectWorkspace() {
         mStatus->showJob(mWorkspace.currentJob());
         // The file that it was wished for could not be opened.
         if (!mWorkspace.running(JobKind::Open)) mVectorizeWhenOpen = false;
+        showBeginning();
         updateActions();
     });
+    connect(mOpening, &OpeningCard::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::zoomClicked, this, [this] { mCanvas->zoomTo(1); });
     connect(mTabs, &QTabBar::currentChanged, this, [this](int tab) {
@@ -204,7 +207,7 @@ void MainWindow::connectPanels() {
     connect(mPanel, &VectorizePanel::draftWanted, this,
             [this] { mDrafts.want(mPanel->settings(mWorkspace.session())); });
     connect(mPanel, &VectorizePanel::draftDropped, &mDrafts, &DraftPreview::drop);
-    connect(mCanvas, &CanvasWidget::draftLeft, &mDrafts, &DraftPreview::drop);
+    connect(mCanvas, &CanvasWidget::draftLeft, this, &MainWindow::leaveDraft);
     connect(mCanvas, &CanvasWidget::draftPressed, this, &MainWindow::explainDraft);
     connect(&mDrafts, &DraftPreview::changed, this, &MainWindow::showDraft);
     mRecolour->setToolOptions(mTools);
@@ -267,13 +270,20 @@ void MainWindow::welcome(DocumentSession& session) {
 
 void MainWindow::showSession() {
     const DocumentSession* session = mWorkspace.session();
-    mStart->setVisible(!session);
+    showBeginning();
     const size_t features = session ? featureCount(session->document().mesh) : 0;
     mStatus->showCounts(session, features);
     mPanel->showSession(session, features);
     showView();
     updateActions();
     updateTitle();
+}
+
+void MainWindow::showBeginning() {
+    const bool nothing = !mWorkspace.session();
+    const Job* job = nothing ? mWorkspace.running(JobKind::Open) : nullptr;
+    mOpening->showJob(job);
+    mStart->setVisible(nothing && !job);
 }
 
 void MainWindow::showTabs() {
@@ -382,6 +392,13 @@ void MainWindow::showDraft() {
     mCanvas->setDraft(draft);
     if (!draft) mMessages->hide();
     mPanel->showDraft(draft ? std::optional(draft->patchCount()) : std::nullopt);
+}
+
+void MainWindow::leaveDraft() {
+    mDrafts.drop();
+    // The number of patches goes back with the picture.
+    const DocumentSession* session = mWorkspace.session();
+    if (session && session->hasMesh()) mPanel->setPatches(session->document().settings.patches);
 }
 
 void MainWindow::explainDraft() {

@@ -23,6 +23,7 @@ class CanvasWidget;
 class HistoryPanel;
 class MessageBar;
 class Navigator;
+class OpeningCard;
 class PalettePanel;
 class RecolourPanel;
 class Ruler;
@@ -85,6 +86,8 @@ class MainWindow : public QMainWindow {
     void adoptSession();
     void welcome(DocumentSession& session);
     void showSession();
+    // What the canvas shows while no document is there.
+    void showBeginning();
     void showTabs();
     void updateActions();
     void updateSelectionActions();
@@ -94,6 +97,7 @@ class MainWindow : public QMainWindow {
     void showView();
     void startVectorize();
     void showDraft();
+    void leaveDraft();
     void explainDraft();
     void fitSelection();
     void changeBrush(double factor);
@@ -128,6 +132,7 @@ class MainWindow : public QMainWindow {
     HeatMap mHeatMap;
     CanvasWidget* mCanvas = nullptr;
     StartPage* mStart = nullptr;
+    OpeningCard* mOpening = nullptr;
     QTabBar* mTabs = nullptr;
     Ruler* mTopRuler = nullptr;
     Ruler* mLeftRuler = nullptr;

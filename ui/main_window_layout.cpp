@@ -12,6 +12,7 @@
 #include "ui/canvas_widget.h"
 #include "ui/main_window.h"
 #include "ui/message_bar.h"
+#include "ui/opening_card.h"
 #include "ui/panels/history_panel.h"
 #include "ui/panels/navigator.h"
 #include "ui/panels/palette_panel.h"
@@ -74,7 +75,8 @@ QWidget* MainWindow::makeCentre() {
 
     auto* over = new QGridLayout(mCanvas);
     over->setContentsMargins(0, 0, 0, 0);
-    over->addWidget(mStart = new StartPage);
+    over->addWidget(mStart = new StartPage, 0, 0);
+    over->addWidget(mOpening = new OpeningCard, 0, 0, Qt::AlignCenter);
     return work;
 }
 

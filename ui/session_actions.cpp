@@ -29,36 +29,50 @@ enum Needs : unsigned {
 struct SessionAction {
     ActionId id;
     unsigned needs;
-    Result<void> (*run)(DocumentSession&, const ToolManager&);
+    // What there is to say: a failure, or a remark, or nothing.
+    QString (*run)(DocumentSession&, const ToolManager&);
 };
 
+QString wordsOf(const Result<void>& result) {
+    return result ? QString() : asSentence(result.error().message);
+}
+
+QString wordsOf(const Result<QString>& result) {
+    return result ? *result : asSentence(result.error().message);
+}
+
 template <void (*kRun)(DocumentSession&)>
-Result<void> always(DocumentSession& session, const ToolManager&) {
+QString always(DocumentSession& session, const ToolManager&) {
     kRun(session);
     return {};
 }
 
 template <Result<void> (*kRun)(DocumentSession&)>
-Result<void> perhaps(DocumentSession& session, const ToolManager&) {
-    return kRun(session);
+QString perhaps(DocumentSession& session, const ToolManager&) {
+    return wordsOf(kRun(session));
+}
+
+template <Result<QString> (*kRun)(DocumentSession&)>
+QString perhaps(DocumentSession& session, const ToolManager&) {
+    return wordsOf(kRun(session));
 }
 
 template <PatchFlag kFlag, bool kOn>
-Result<void> flag(DocumentSession& session, const ToolManager&) {
-    return setFlag(session, kFlag, kOn);
+QString flag(DocumentSession& session, const ToolManager&) {
+    return wordsOf(setFlag(session, kFlag, kOn));
 }
 
 template <PatchFlag kFlag>
-Result<void> clear(DocumentSession& session, const ToolManager&) {
-    return clearFlag(session, kFlag);
+QString clear(DocumentSession& session, const ToolManager&) {
+    return wordsOf(clearFlag(session, kFlag));
 }
 
 template <bool kOn>
-Result<void> feature(DocumentSession& session, const ToolManager&) {
-    return setFeature(session, kOn);
+QString feature(DocumentSession& session, const ToolManager&) {
+    return wordsOf(setFeature(session, kOn));
 }
 
-Result<void> similar(DocumentSession& session, const ToolManager& tools) {
+QString similar(DocumentSession& session, const ToolManager& tools) {
     selectSimilar(session, tools.options().wand);
     return {};
 }
@@ -113,8 +127,7 @@ void connectSessionActions(const ActionTable& actions, QObject* receiver,
         QObject::connect(actions[action.id], &QAction::triggered, receiver, [=, &tools] {
             DocumentSession* current = session();
             if (!current || !current->hasMesh()) return;
-            const Result<void> result = action.run(*current, tools);
-            if (!result) say(asSentence(result.error().message));
+            if (const QString words = action.run(*current, tools); !words.isEmpty()) say(words);
         });
 }
 

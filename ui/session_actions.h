@@ -12,7 +12,7 @@ namespace tessera {
 class ActionTable;
 
 // Connects those actions. `session` names the document that they are about, null for none; `say` gets one
-// sentence about what failed.
+// sentence about what failed or was left out.
 void connectSessionActions(const ActionTable& actions, QObject* receiver,
                            std::function<DocumentSession*()> session, const ToolManager& tools,
                            std::function<void(const QString&)> say);

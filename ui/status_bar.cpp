@@ -2,6 +2,7 @@
 #include "ui/status_bar.h"
 
 #include <QHBoxLayout>
+#include <QHash>
 #include <QLabel>
 #include <QLocale>
 #include <QPainter>
@@ -11,13 +12,13 @@
 #include <cmath>
 
 #include "app/document_session.h"
-#include "app/jobs/job.h"
 
 namespace tessera {
 
 namespace {
 
 constexpr int kProgressSteps = 1000;
+constexpr int kAgainMs = 1000;
 constexpr int kHeightPx = 32;
 constexpr int kLeastTextPx = 60;
 
@@ -43,6 +44,26 @@ QLabel* fixedLabel(const QString& widest, Qt::Alignment alignment) {
     label->setMinimumWidth(label->fontMetrics().horizontalAdvance(widest) + 4);
     label->setAlignment(alignment | Qt::AlignVCenter);
     return label;
+}
+
+// What is being done, of the stages that say it in the words of the method.
+QString stageText(const QString& stage) {
+    static const QHash<QString, const char*> kWords{{"features", QT_TR_NOOP("finding outlines")},
+                                                    {"initial-mesh", QT_TR_NOOP("laying out patches")},
+                                                    {"simplify", QT_TR_NOOP("choosing patches")},
+                                                    {"curves", QT_TR_NOOP("bending curves")},
+                                                    {"colours", QT_TR_NOOP("fitting colours")}};
+    const char* words = kWords.value(stage, nullptr);
+    return words ? QObject::tr(words) : stage;
+}
+
+// No finer than an estimate is.
+QString leftText(double seconds) {
+    constexpr int kStep = 5, kMinute = 60;
+    if (seconds < 2 * kStep) return QObject::tr("a few seconds left");
+    if (seconds < 1.5 * kMinute)
+        return QObject::tr("about %1 s left").arg(kStep * int(std::lround(seconds / kStep)));
+    return QObject::tr("about %1 min left").arg(int(std::lround(seconds / kMinute)));
 }
 
 }  // namespace
@@ -80,6 +101,7 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     addWidget(mJob, 1);
     mJob->hide();
     connect(mCancel, &QPushButton::clicked, this, &StatusBar::cancelRequested);
+    connect(&mAgain, &QTimer::timeout, this, [this] { showJob(mShown); });
 
     mSelected = new QLabel;
     mRenderer = new QLabel;
@@ -108,13 +130,16 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
 }
 
 void StatusBar::showJob(const Job* job) {
+    mShown = job;
     mJob->setVisible(job);
-    if (!job) return;
+    if (!job) return mAgain.stop();
+    mAgain.start(kAgainMs);
     QString text = job->title();
     if (job->stopRequested())
         text += tr(" — stopping…");
     else if (!job->stage().isEmpty())
-        text += tr(" — %1, %2 %").arg(job->stage()).arg(int(std::floor(job->fraction() * 100)));
+        text += tr(" — %1, %2 %").arg(stageText(job->stage())).arg(int(std::floor(job->fraction() * 100)));
+    if (const auto left = job->secondsLeft(); left && !job->stopRequested()) text += ", " + leftText(*left);
     mJobText->setText(text);
     mProgress->setValue(int(job->fraction() * kProgressSteps));
     mCancel->setVisible(job->kind() != JobKind::Save);

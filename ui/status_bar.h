@@ -4,8 +4,12 @@
 
 #include <QColor>
 #include <QPointF>
+#include <QPointer>
 #include <QStatusBar>
+#include <QTimer>
 #include <optional>
+
+#include "app/jobs/job.h"
 
 class QLabel;
 class QProgressBar;
@@ -14,8 +18,6 @@ class QPushButton;
 namespace tessera {
 
 class DocumentSession;
-class Job;
-
 class StatusBar : public QStatusBar {
     Q_OBJECT
 
@@ -40,6 +42,8 @@ class StatusBar : public QStatusBar {
     void zoomClicked();
 
   private:
+    QPointer<const Job> mShown;
+    QTimer mAgain;  // the time that is left changes while a job reports nothing, too
     QWidget* mJob;
     QLabel* mJobText;
     QProgressBar* mProgress;

@@ -32,7 +32,15 @@ Job::~Job() {
     stop();
 }
 
+std::optional<double> Job::secondsLeft() const {
+    constexpr double kLeastSeconds = 2, kLeastFraction = .05;
+    const double seconds = double(mSinceStart.isValid() ? mSinceStart.elapsed() : 0) / 1000;
+    if (seconds < kLeastSeconds || mFraction < kLeastFraction) return {};
+    return seconds * (1 - mFraction) / mFraction;
+}
+
 void Job::startTask(std::function<void(Progress&)> task, std::function<void()> done) {
+    mSinceStart.start();
     using Watcher = QFutureWatcher<void>;
     auto* watcher = new Watcher(this);
     connect(watcher, &Watcher::progressValueChanged, this,

@@ -2,6 +2,7 @@
 // thread.
 #pragma once
 
+#include <QElapsedTimer>
 #include <QObject>
 #include <QString>
 #include <functional>
@@ -33,6 +34,8 @@ class Job : public QObject {
     const QString& stage() const { return mStage; }
     double fraction() const { return mFraction; }
     bool stopRequested() const { return mStop.stop_requested(); }
+    // As long as it has taken so far for what is done; none before there is enough to tell by.
+    std::optional<double> secondsLeft() const;
 
     // How many threads the work of jobs started from now on may use each; 0 is one for each core.
     static void setThreadLimit(int threads);
@@ -62,6 +65,7 @@ class Job : public QObject {
     QString mTitle;
     QString mStage;
     double mFraction = 0;
+    QElapsedTimer mSinceStart;
     std::stop_source mStop;
 };
 

@@ -9,6 +9,8 @@ namespace tessera {
 
 namespace {
 
+constexpr double kNearlyAll = .75;
+
 PatchSet selectableOnly(const PatchMesh& mesh, PatchSet set) {
     std::erase_if(set, [&](PatchId p) { return !selectable(mesh, p); });
     return set;
@@ -45,7 +47,12 @@ void SelectTool::doubleClick(const ToolEvent& event) {
     if (!hit) return;
     // In the way of the modifiers, of what the first of the two clicks has left.
     pressed(event);
-    select(enclosedByFeatures(mesh(), hit->patch), event.modifiers);
+    const PatchSet found = enclosedByFeatures(mesh(), hit->patch);
+    select(found, event.modifiers);
+    if (double(found.size()) > kNearlyAll * double(mesh().patchCount()))
+        host().say(
+            QObject::tr("The features around this place have gaps, so nearly everything is selected. "
+                        "The wand with “Stop at features” keeps to colours too."));
 }
 
 ToolOverlay SelectTool::overlay() const {
@@ -68,8 +75,7 @@ ToolOverlay LassoTool::overlay() const {
 
 void WandTool::clicked(const ToolEvent& event) {
     const auto hit = session().query().patchAt(event.point);
-    const PatchSet found =
-        hit ? wand(mesh(), session().colours(), hit->patch, options().wand) : PatchSet();
+    const PatchSet found = hit ? wand(mesh(), session().colours(), hit->patch, options().wand) : PatchSet();
     Selection& selection = session().selection();
     selection.setPatches(combined(selection.patches(), found, selectModeOf(event.modifiers)));
 }

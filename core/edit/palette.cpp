@@ -19,9 +19,17 @@ constexpr double kSameColour = .01;
 
 struct Weighted {
     glm::dvec3 lab;
-    double weight;
+    double area;
+    double weight;  // in the search
     PatchId patch;
 };
+
+// Colourful patches count for more than their area: an eye finds the red apple before a grey wall's third
+// shade.
+double liveliness(glm::dvec3 lab) {
+    constexpr double kChroma = .07;  // twice the weight
+    return 1 + (lab.y * lab.y + lab.z * lab.z) / (kChroma * kChroma);
+}
 
 double squaredDistance(glm::dvec3 a, glm::dvec3 b) {
     return glm::dot(a - b, a - b);
@@ -102,10 +110,10 @@ Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count) {
     std::vector<Weighted> all;
     double total = 0;
     mesh.forEachPatch([&](PatchId p) {
-        const double weight = colours[p].area * colours[p].alpha;
-        if (!(weight > 0)) return;
-        all.push_back({colours[p].lab, weight, p});
-        total += weight;
+        const double area = colours[p].area * colours[p].alpha;
+        if (!(area > 0)) return;
+        all.push_back({colours[p].lab, area, area * liveliness(colours[p].lab), p});
+        total += area;
     });
     Palette result;
     result.nearest.assign(mesh.connectivity().faceCapacity(), Palette::kNone);
@@ -119,7 +127,7 @@ Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count) {
     std::vector<size_t> nearest(all.size());
     for (size_t i = 0; i < all.size(); ++i) {
         nearest[i] = nearestOf(means, all[i].lab);
-        entries[nearest[i]].weight += all[i].weight / total;
+        entries[nearest[i]].weight += all[i].area / total;
         ++entries[nearest[i]].patches;
     }
     std::vector<size_t> order(entries.size()), rank(entries.size());

@@ -26,7 +26,7 @@ struct Palette {
     double spread = 0;                  // in OKLab: of the shares
 };
 
-// By k-means in OKLab over the patches' mean colours, weighted by area. `count` is brought into
+// By k-means in OKLab over the patches' mean colours, weighted by area and chroma. `count` is brought into
 // kLeast..kMost; fewer entries where there are fewer colours. The same for the same colours.
 Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count);
 

@@ -31,11 +31,11 @@ namespace {
 const std::map<std::string, std::vector<StageVariants>>& methods() {
     static const std::map<std::string, std::vector<StageVariants>> table{
         {"default",
-         {{"features", .06, {"subpixel", "none"}},
-          {"initial-mesh", .04, {"delaunay"}},
-          {"simplify", .60, {"true-error"}},
-          {"curves", .10, {"error", "straight"}},
-          {"colours", .20, {"joint"}}}},
+         {{"features", .08, {"subpixel", "none"}},
+          {"initial-mesh", .02, {"delaunay"}},
+          {"simplify", .17, {"true-error"}},
+          {"curves", .08, {"error", "straight"}},
+          {"colours", .65, {"joint"}}}},
         {"paper",
          {{"features", .03, {"canny", "none"}},
           {"initial-mesh", .07, {"grid"}},

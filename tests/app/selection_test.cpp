@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "app/edit_actions.h"
 #include "app/selection_actions.h"
 #include "core/edit/split_merge.h"
+#include "core/mesh/mesh_validate.h"
 #include "tests/support/edits.h"
 #include "tests/support/test_meshes.h"
 
@@ -153,6 +156,62 @@ TEST_F(SelectionTest, EditsOfTheSelectionAndTheWayBack) {
     EXPECT_EQ(session.history().count(), 2);
     session.history().goTo(0);
     EXPECT_EQ(testing::bytesOf(session.document()), start);
+}
+
+TEST_F(SelectionTest, WhatCannotBeSplitStaysAndIsToldOf) {
+    constexpr Barycentric kCentre(1. / 3, 1. / 3, 1. / 3);
+    // A part of a part of a part, until there is no room for another vertex.
+    PatchId tiny(6);
+    while (applyEdit(session, "Split", [&](PatchMesh& m) { return splitPatch(m, tiny, kCentre); }))
+        tiny = PatchId(uint32_t(mesh().connectivity().faceCapacity() - 1));
+    selection.setPatches({tiny});
+    EXPECT_FALSE(splitPatches(session).has_value()) << "there was nothing else to split";
+
+    const size_t patches = mesh().patchCount();
+    const int steps = session.history().count();
+    selection.setPatches({PatchId(1), PatchId(12), tiny});
+    const Result<QString> remark = splitPatches(session);
+    ASSERT_TRUE(remark) << remark.error().message;
+    EXPECT_TRUE(remark->startsWith("1 of 3 were left")) << remark->toStdString();
+    EXPECT_EQ(mesh().patchCount(), patches + 4);
+    EXPECT_EQ(session.history().count(), steps + 1);
+    EXPECT_EQ(selection.patches().size(), 7u) << "the parts, and the one that has none";
+    session.history().undo();
+    EXPECT_EQ(mesh().patchCount(), patches);
+
+    selection.setPatches({PatchId(1), PatchId(12)});
+    EXPECT_EQ(splitPatches(session).value(), QString());
+}
+
+TEST_F(SelectionTest, CurvesThatCannotBeEditedHoldUpNoOthers) {
+    std::vector<EdgeId> all;
+    mesh().forEachEdge([&](EdgeId e) { all.push_back(e); });
+    const auto border = size_t(
+        std::count_if(all.begin(), all.end(), [&](EdgeId e) { return mesh().connectivity().onBorder(e); }));
+    selection.setShape({}, all);
+    const Result<QString> marked = setFeature(session, true);
+    ASSERT_TRUE(marked);
+    EXPECT_TRUE(marked->startsWith(QString("%1 of %2 ").arg(border).arg(all.size())))
+        << marked->toStdString();
+    EXPECT_EQ(session.history().undoText(), "Mark Feature");
+
+    selection.setPatches({PatchId(0)});
+    ASSERT_TRUE(setFlag(session, PatchFlag::Locked, true));
+    selection.setShape({}, all);
+    const size_t patches = mesh().patchCount();
+    const Result<QString> split = splitCurves(session);
+    ASSERT_TRUE(split);
+    EXPECT_TRUE(split->startsWith(QString("3 of %1 ").arg(all.size()))) << split->toStdString();
+    EXPECT_GT(mesh().patchCount(), 3 * patches);
+    session.history().undo();
+
+    const Result<QString> merged = mergeCurves(session);
+    ASSERT_TRUE(merged);
+    EXPECT_FALSE(merged->isEmpty());
+    EXPECT_LT(mesh().patchCount(), patches);
+    EXPECT_TRUE(validate(mesh()).valid());
+    session.history().undo();
+    EXPECT_EQ(mesh().patchCount(), patches);
 }
 
 }  // namespace

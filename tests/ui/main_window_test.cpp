@@ -5,13 +5,16 @@
 #include <QDir>
 #include <QDoubleSpinBox>
 #include <QFile>
+#include <QLabel>
 #include <QSlider>
 #include <QSpinBox>
 
 #include "core/export/rasterize.h"
 #include "core/vectorize/quality.h"
 #include "tests/ui/main_window_fixture.h"
+#include "ui/opening_card.h"
 #include "ui/panels/gesture_slider.h"
+#include "ui/start_page.h"
 #include "ui/status_bar.h"
 #include "ui/theme.h"
 
@@ -50,6 +53,45 @@ TEST_F(MainWindowTest, QualityChoosesThePresetAndTheMethodWithItsFields) {
     EXPECT_EQ(Settings().features(), 0);
     QTest::keyClick(quality, Qt::Key_Down);
     features->setValue(50);
+}
+
+TEST_F(MainWindowTest, AFileThatIsBeingOpenedTakesThePlaceOfTheStartPage) {
+    auto* start = window->findChild<StartPage*>();
+    auto* card = window->findChild<OpeningCard*>();
+    ASSERT_TRUE(start && card);
+    EXPECT_TRUE(start->isVisible());
+    EXPECT_FALSE(card->isVisible());
+    const QString other = folder.filePath("other.png");
+    ASSERT_TRUE(disk(60, 40).save(other));
+    window->open(photo);
+    EXPECT_FALSE(start->isVisible());
+    ASSERT_TRUE(card->isVisible());
+    EXPECT_EQ(card->findChild<QLabel*>()->text(), "Opening disk.png…");
+    window->open(other);
+    EXPECT_EQ(card->findChild<QLabel*>()->text(), "Opening other.png…") << "the one that Cancel stops";
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(card->isVisible());
+    EXPECT_FALSE(start->isVisible());
+    EXPECT_EQ(workspace().sessions().size(), 2);
+}
+
+TEST_F(MainWindowTest, OpeningThatIsStoppedOrFailsLeadsBackToTheStartPage) {
+    auto* start = window->findChild<StartPage*>();
+    auto* card = window->findChild<OpeningCard*>();
+    const QString large = folder.filePath("large.png");
+    ASSERT_TRUE(disk(4000, 3000).save(large));
+    window->open(large);
+    QTest::mouseClick(card->findChild<QPushButton*>("cancelOpening"), Qt::LeftButton);
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(card->isVisible());
+    EXPECT_TRUE(start->isVisible());
+    EXPECT_EQ(session(), nullptr);
+    window->open(folder.filePath("missing.png"));
+    EXPECT_TRUE(card->isVisible());
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(card->isVisible());
+    EXPECT_TRUE(start->isVisible());
+    EXPECT_FALSE(window->messages().text().isEmpty());
 }
 
 // A document that was made with numbers of its own keeps them until a preset is chosen.
@@ -112,6 +154,7 @@ TEST_F(MainWindowTest, DraftsFollowTheSliderUntilOneIsApplied) {
     ASSERT_TRUE(settled());
     EXPECT_EQ(button->text(), "Vectorize");
     EXPECT_EQ(difference(grab(), document), 0);
+    EXPECT_EQ(window->panel().settings(session()).patches, kPatches);
     drag(.5);
     QTest::mouseClick(button, Qt::LeftButton);
     ASSERT_TRUE(idle());

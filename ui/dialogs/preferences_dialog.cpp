@@ -22,12 +22,19 @@ namespace {
 constexpr int kAutosaveStepSeconds = 30;
 constexpr int kHistoryStepMegabytes = 128;
 constexpr int kFieldWidthPx = 220;
+constexpr int kAboveHeadingPx = 10;
 
 // Short enough for one line; what wraps takes more room in a form than it shows.
 QLabel* remark(const QString& text) {
     QLabel* label = dimLabel(text);
     label->setWordWrap(false);
     return label;
+}
+
+void addHeading(QFormLayout* form, const QString& text) {
+    QLabel* label = headingLabel(text);
+    label->setContentsMargins(0, kAboveHeadingPx, 0, 0);
+    form->addRow(label);
 }
 
 QSpinBox* numberField(const QString& name, int least, int most, int step, int value) {
@@ -79,10 +86,10 @@ QWidget* PreferencesDialog::makeGeneralPage() {
 
     QFormLayout* form = dialogForm();
     addField(form, tr("&Theme"), mTheme);
-    form->addRow(headingLabel(tr("Safety")));
+    addHeading(form, tr("Safety"));
     addField(form, tr("&Autosave every"), mAutosave);
     form->addRow({}, remark(tr("After a crash, what was autosaved is offered when Tessera starts.")));
-    form->addRow(headingLabel(tr("Machine")));
+    addHeading(form, tr("Machine"));
     addField(form, tr("&Undo memory"), mHistory);
     form->addRow({}, remark(tr("For each document. The oldest steps are forgotten beyond it.")));
     addField(form, tr("T&hreads"), mThreads);
