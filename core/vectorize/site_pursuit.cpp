@@ -125,23 +125,47 @@ void keepEveryOther(PatchCells& cells, int columns) {
     cells.y.resize(kept);
 }
 
-// How many terms pay at this price each.
-int worthwhileTerms(const std::vector<float>& errors, double price) {
+// A number of terms that pays at some price each, and the error with it.
+struct Offer {
+    uint8_t terms;
+    float error;
+};
+using Offers = std::array<std::vector<Offer>, kMaxChannels>;
+
+// The lower convex hull of a curve of errors, as far as it falls.
+std::vector<Offer> offersOf(const std::vector<float>& errors) {
+    std::vector<Offer> hull;
+    const auto gain = [](const Offer& from, const Offer& to) {
+        return double(from.error - to.error) / (to.terms - from.terms);
+    };
+    for (size_t k = 0; k < errors.size(); ++k) {
+        const Offer offer{uint8_t(size_t(kCorners) + k), errors[k]};
+        if (!hull.empty() && offer.error >= hull.back().error) continue;
+        while (hull.size() > 1 && gain(hull[hull.size() - 2], hull.back()) <= gain(hull.back(), offer))
+            hull.pop_back();
+        hull.push_back(offer);
+    }
+    return hull;
+}
+
+int worthwhileTerms(const std::vector<Offer>& offers, double price) {
+    if (offers.empty()) return kCorners;
     size_t best = 0;
-    for (size_t k = 1; k < errors.size(); ++k)
-        if (double(errors[k]) + price * double(k) < double(errors[best]) + price * double(best)) best = k;
-    return kCorners + int(best);
+    while (best + 1 < offers.size() && double(offers[best].error - offers[best + 1].error) >
+                                           price * (offers[best + 1].terms - offers[best].terms))
+        ++best;
+    return offers[best].terms;
 }
 
 // The same price everywhere, as low as the budget allows.
-void spend(const PatchMesh& mesh, const std::vector<ErrorCurves>& errors, double budget,
+void spend(const PatchMesh& mesh, const std::vector<Offers>& offers, double budget,
            std::vector<SiteChoice>& choices) {
     const auto choose = [&](double price) {
         double total = 0;
         mesh.forEachPatch([&](PatchId p) {
             for (int c = 0; c < mesh.channels(); ++c)
                 total += choices[p.index].terms[size_t(c)] =
-                    worthwhileTerms(errors[p.index][size_t(c)], price);
+                    worthwhileTerms(offers[p.index][size_t(c)], price);
         });
         return total;
     };
@@ -174,7 +198,7 @@ std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture,
                                     Progress& progress) {
     const size_t capacity = mesh.connectivity().faceCapacity();
     std::vector<SiteChoice> choices(capacity);
-    std::vector<ErrorCurves> errors(capacity);
+    std::vector<Offers> offers(capacity);
     TESSERA_CHECK(picture.width() % mesh.width() == 0);
     const FitGrid grid{mesh.width(), mesh.height(), picture.width() / mesh.width(), {}};
     const CellSampler sampler(mesh, grid, 1);
@@ -188,13 +212,16 @@ std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture,
             const int most = std::clamp(int(cells.cells.size()), kCorners, int(sites.size()));
             const bool thinned = cells.cells.size() > kManyPerSite * sites.size();
             if (thinned) keepEveryOther(cells, picture.width());
-            Pursuit(cells, picture, sites, most).run(most, choices[p].sites, errors[p]);
-            for (auto& curve : errors[p])
-                for (float& error : curve) error *= thinned ? 2 : 1;
+            ErrorCurves errors;
+            Pursuit(cells, picture, sites, most).run(most, choices[p].sites, errors);
+            for (size_t c = 0; c < errors.size(); ++c) {
+                for (float& error : errors[c]) error *= thinned ? 2 : 1;
+                offers[p][c] = offersOf(errors[c]);
+            }
         }
     });
     if (progress.stopRequested()) return {};
-    spend(mesh, errors, termsPerPatch * double(mesh.patchCount()), choices);
+    spend(mesh, offers, termsPerPatch * double(mesh.patchCount()), choices);
     mesh.forEachPatch([&](PatchId p) {
         SiteChoice& choice = choices[p.index];
         if (choice.sites.empty()) choice.sites = {0, 1, 2};
