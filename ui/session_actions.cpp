@@ -1,6 +1,8 @@
 // See session_actions.h.
 #include "ui/session_actions.h"
 
+#include <QCursor>
+#include <QGuiApplication>
 #include <array>
 
 #include "app/edit_actions.h"
@@ -127,7 +129,11 @@ void connectSessionActions(const ActionTable& actions, QObject* receiver,
         QObject::connect(actions[action.id], &QAction::triggered, receiver, [=, &tools] {
             DocumentSession* current = session();
             if (!current || !current->hasMesh()) return;
-            if (const QString words = action.run(*current, tools); !words.isEmpty()) say(words);
+            // Splits, merges and fits of very many patches take seconds.
+            QGuiApplication::setOverrideCursor(Qt::WaitCursor);
+            const QString words = action.run(*current, tools);
+            QGuiApplication::restoreOverrideCursor();
+            if (!words.isEmpty()) say(words);
         });
 }
 

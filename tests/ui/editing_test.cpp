@@ -178,11 +178,14 @@ TEST_F(Editing, SplitViewShowsThePhotoLeftOfItsLine) {
     const QImage vector = grab();
     key(Qt::Key_6, Qt::ControlModifier);
     const QImage split = grab();
-    const int middle = canvas().width() / 2;
+    // Below the words that say which side is which.
+    const int middle = canvas().width() / 2, top = canvas().height() / 2;
     const auto right = [&](const QImage& image) {
-        return image.copy(middle + 4, 0, image.width() - middle - 4, image.height());
+        return image.copy(middle + 4, top, image.width() - middle - 4, image.height() - top);
     };
-    const auto left = [&](const QImage& image) { return image.copy(0, 0, middle - 4, image.height()); };
+    const auto left = [&](const QImage& image) {
+        return image.copy(0, top, middle - 4, image.height() - top);
+    };
     EXPECT_EQ(difference(right(split), right(vector)), 0);
     EXPECT_GT(difference(left(split), left(vector)), 0);
     drag({middle, 100}, {{middle - 60, 100}, {middle - 120, 100}});

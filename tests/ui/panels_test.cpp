@@ -210,6 +210,20 @@ TEST_F(SelectionPanelTest, ButtonsAndCounts) {
     EXPECT_FALSE(child<QPushButton>(panel, "all")->isEnabled());
 }
 
+TEST_F(SelectionPanelTest, TellsOfPatchesOutOfReach) {
+    auto* counts = child<QLabel>(panel, "counts");
+    session->selection().setPatches(column(1));
+    ASSERT_TRUE(setFlag(*session, PatchFlag::Locked, true));
+    session->selection().setPatches({column(2)[0]});
+    ASSERT_TRUE(setFlag(*session, PatchFlag::Hidden, true));
+    QTest::qWait(5);
+    EXPECT_EQ(counts->text(), "Nothing selected\n1 hidden, 8 locked");
+    ASSERT_TRUE(clearFlag(*session, PatchFlag::Locked));
+    ASSERT_TRUE(clearFlag(*session, PatchFlag::Hidden));
+    QTest::qWait(5);
+    EXPECT_EQ(counts->text(), "Nothing selected");
+}
+
 TEST_F(SelectionPanelTest, StoresRecallsRenamesAndRemoves) {
     session->selection().setPatches(column(0));
     QTest::qWait(5);

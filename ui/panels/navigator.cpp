@@ -26,6 +26,8 @@ constexpr int kTicksPerOctave = 20;
 constexpr double kOctavesPerNotch = .25;
 // Of the visible part, by which an arrow key moves.
 constexpr double kKeyStep = .1;
+// As light as the canvas's checks.
+const QColor kUnderTransparent(139, 139, 139);
 
 int tickOf(double scale) {
     return int(std::lround(std::log2(scale) * kTicksPerOctave));
@@ -141,6 +143,7 @@ void NavigatorView::paintEvent(QPaintEvent*) {
     const QSize size = (rect.size() * ratio).toSize();
     if (mScaled.size() != size)
         mScaled = mPicture.scaled(size, Qt::IgnoreAspectRatio, Qt::SmoothTransformation);
+    painter.fillRect(rect, kUnderTransparent);
     painter.drawImage(rect, mScaled);
     const QRectF frame = frameRect();
     painter.setRenderHint(QPainter::Antialiasing);

@@ -72,6 +72,23 @@ void StoredList::keyPressEvent(QKeyEvent* event) {
     }
 }
 
+namespace {
+
+// How many patches cannot be selected, and why; empty for none.
+QString outOfReach(const PatchMesh& mesh) {
+    qulonglong hidden = 0, locked = 0;
+    mesh.forEachPatch([&](PatchId p) {
+        hidden += mesh.attributes(p).hidden;
+        locked += mesh.attributes(p).locked;
+    });
+    QStringList parts;
+    if (hidden > 0) parts += QObject::tr("%1 hidden").arg(QLocale().toString(hidden));
+    if (locked > 0) parts += QObject::tr("%1 locked").arg(QLocale().toString(locked));
+    return parts.join(QObject::tr(", "));
+}
+
+}  // namespace
+
 SelectionPanel::SelectionPanel(QWidget* parent) : LazyPanel(parent), mCounts(new QLabel) {
     setAccessibleName(tr("Selection"));
     auto* column = panelColumn(this);
@@ -147,7 +164,7 @@ void SelectionPanel::setSession(DocumentSession* session) {
     if (session) {
         connect(session, &DocumentSession::changed, this, [this](const Change& change) {
             if (change.selections || change.replaced) fillStored();
-            if (change.replaced || change.touched.topology) refreshSoon();
+            if (change.mesh() && !change.preview) refreshSoon();
         });
         connect(&session->selection(), &Selection::changed, this, &SelectionPanel::refreshSoon);
         connect(session, &QObject::destroyed, this, [this] { setSession(nullptr); });
@@ -171,7 +188,10 @@ void SelectionPanel::refresh() {
                           locale.toString(qulonglong(mSession->document().mesh.patchCount())));
     if (!selection.points().empty()) parts += tr("points: %1").arg(selection.points().size());
     if (!selection.curves().empty()) parts += tr("curves: %1").arg(selection.curves().size());
-    mCounts->setText(parts.isEmpty() ? tr("Nothing selected") : parts.join(tr(", ")));
+    QString text = parts.isEmpty() ? tr("Nothing selected") : parts.join(tr(", "));
+    // Nothing on the canvas tells hidden patches from those cut out, and locked ones look like all others.
+    if (const QString kept = outOfReach(mSession->document().mesh); !kept.isEmpty()) text += '\n' + kept;
+    mCounts->setText(text);
 }
 
 void SelectionPanel::fillStored() {
