@@ -167,8 +167,8 @@ const std::array<SitePlane, 10>& controlShares() {
     return shares;
 }
 
-// The colours of a patch at all sites, and the alphas.
-void sampleSites(const PatchMesh& mesh, PatchId p, PaintedColours& to, SitePlane& alphas) {
+// The colours of a patch at all sites, with their places where they are asked for; and the alphas.
+void sampleSites(const PatchMesh& mesh, PatchId p, bool placed, PaintedColours& to, SitePlane& alphas) {
     const DomainPoints& points = sitePoints().domain;
     const size_t n = points.size();
     SitePlanes values{};
@@ -186,7 +186,7 @@ void sampleSites(const PatchMesh& mesh, PatchId p, PaintedColours& to, SitePlane
         to.whole[c] = values[c];
         for (size_t i = 0; i < kSitePlane; ++i) to.srgb[c][i] = std::clamp(values[c][i], 0.F, 1.F);
     }
-    placesOf(controlShares(), toPixels(mesh.controlPoints(p)), to.point);
+    if (placed) placesOf(controlShares(), toPixels(mesh.controlPoints(p)), to.point);
     to.makeLab();
 }
 
@@ -219,7 +219,7 @@ Repainter::Spline Repainter::refitted(const Patch& patch, const Repaint& repaint
                                       const AffineColour& guess) const {
     PaintedColours colours{};
     SitePlane alphas;
-    sampleSites(mStart, patch.id, colours, alphas);
+    sampleSites(mStart, patch.id, repaint.dependsOnPoint, colours, alphas);
     SitePlanes targets{}, whole{};
     paint(repaint, colours, targets);
     float most = 0;

@@ -8,6 +8,8 @@
 #include <glm/matrix.hpp>
 #include <numeric>
 
+#include "core/base/vector_clones.h"
+
 namespace tessera {
 
 namespace {
@@ -40,6 +42,24 @@ Mix mixOf(int channels, ColourBasis basis, const AffineColour& change) {
     return mix;
 }
 
+// `length` coefficients of a channel that is made of a spline's.
+TESSERA_VECTOR_CLONES
+void mixChannel(const PatchSpline& spline, size_t channels,
+                const std::array<double, kMaxChannels + 1>& shares, size_t length, float* out) {
+    double sum[kPolynomials + 255];
+    std::fill_n(sum, length, 0.0);
+    sum[0] = shares[kMaxChannels];
+    const float* k = spline.coefficients.data();
+    for (size_t from = 0; from < channels; ++from) {
+        const size_t own = size_t(kPolynomials) + spline.terms[from];
+        const double share = shares[from];
+        if (share != 0)
+            for (size_t i = 0; i < own; ++i) sum[i] += share * double(k[i]);
+        k += own;
+    }
+    for (size_t i = 0; i < length; ++i) out[i] = float(sum[i]);
+}
+
 }  // namespace
 
 AffineColour tinted(glm::dvec3 colour, double strength) {
@@ -66,20 +86,9 @@ PatchSpline mixed(const PatchSpline& spline, int channels, ColourBasis basis, co
     }
     result.coefficients.resize(std::accumulate(lengths.begin(), lengths.end(), size_t{0}));
     float* out = result.coefficients.data();
-    std::array<double, kPolynomials + 255> sum;
     for (size_t c = 0; c < count; ++c) {
-        std::fill_n(sum.begin(), lengths[c], 0.0);
-        sum[0] = mix[c][kMaxChannels];
-        const float* k = spline.coefficients.data();
-        for (size_t from = 0; from < count; ++from) {
-            const size_t own = size_t(kPolynomials) + spline.terms[from];
-            const double share = mix[c][from];
-            if (share != 0)
-                for (size_t i = 0; i < own; ++i) sum[i] += share * double(k[i]);
-            k += own;
-        }
-        out = std::transform(sum.begin(), sum.begin() + long(lengths[c]), out,
-                             [](double v) { return float(v); });
+        mixChannel(spline, count, mix[c], lengths[c], out);
+        out += lengths[c];
     }
     return result;
 }
