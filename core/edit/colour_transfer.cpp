@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/edit/colour_fan.h"
-#include "core/edit/spline_edit.h"
+#include "core/edit/site_fit.h"
 #include "core/mesh/patch_query.h"
 
 namespace tessera {
@@ -64,15 +64,13 @@ PatchHit find(const std::vector<Source>& sources, glm::dvec2 point) {
 PatchSpline transferredColours(const PatchMesh& mesh, const PatchSet& from, PatchId like,
                                const BezierTriangle& shape) {
     const std::vector<Source> sources = sourcesOf(mesh, from, like);
-    const RefitPoints& points = RefitPoints::all();
-    const size_t n = points.size();
-    std::vector<double> values(n * size_t(mesh.channels()));
-    for (size_t i = 0; i < n; ++i) {
-        const PatchHit hit = find(sources, evaluate(shape, points.barycentrics[i]));
+    SitePlanes values{};
+    for (size_t i = 0; i < size_t(kCentreSites); ++i) {
+        const PatchHit hit = find(sources, evaluate(shape, sitePoints().barycentrics[i]));
         for (int c = 0; c < mesh.channels(); ++c)
-            values[size_t(c) * n + i] = evaluateSpline(mesh.spline(hit.patch), c, domainPoint(hit.at));
+            values[size_t(c)][i] = float(evaluateSpline(mesh.spline(hit.patch), c, domainPoint(hit.at)));
     }
-    return SplineRefit(mesh.spline(like)).fit(values, mesh.channels()).value();
+    return fittedLike(mesh.spline(like), mesh.channels(), values);
 }
 
 }  // namespace tessera

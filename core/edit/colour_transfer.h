@@ -7,7 +7,7 @@
 namespace tessera {
 
 // The colours that the patches `from` of a mesh show on `shape`, as those of a patch of that shape, fitted
-// (SplineRefit) like the spline of `like`, which is one of them. Of `from` those count that are joined with
+// (fittedLike) like the spline of `like`, which is one of them. Of `from` those count that are joined with
 // `like` across edges other than features and colour breaks; where the shape reaches beyond them it gets the
 // colours of their nearest points.
 PatchSpline transferredColours(const PatchMesh& mesh, const PatchSet& from, PatchId like,

@@ -7,7 +7,7 @@
 
 #include "core/edit/colour_fan.h"
 #include "core/edit/colour_samples.h"
-#include "core/edit/spline_edit.h"
+#include "core/edit/site_fit.h"
 #include "core/mesh/blur_profile.h"
 
 namespace tessera {
@@ -48,22 +48,16 @@ std::map<PatchId, Corners> ringOf(const PatchMesh& mesh, PatchId p, const Baryce
 // The spline with a change, of R, G and B premultiplied, laid on by a share that is even at 0 and at 1: so
 // that no crease is seen where the ring ends.
 PatchSpline changed(const PatchMesh& mesh, PatchId p, const Corners& shares, glm::dvec3 change) {
-    const DomainPoints& points = RefitPoints::all().domain;
-    const size_t n = points.size();
-    std::vector<float> now(n * kMaxChannels);
-    float* planes[kMaxChannels];
-    for (size_t c = 0; c < kMaxChannels; ++c) planes[c] = now.data() + c * n;
-    evaluateSplines(mesh.spline(p), mesh.channels(), points.x.data(), points.y.data(), n, planes);
     float inBasis[3] = {float(change.x), float(change.y), float(change.z)};
     float* single[3] = {&inBasis[0], &inBasis[1], &inBasis[2]};
     fromWorking(mesh.colourBasis(), single, 1);
-    std::vector<double> values(now.begin(), now.end());
-    for (size_t i = 0; i < n; ++i) {
-        const Barycentric& b = RefitPoints::all().barycentrics[i];
+    SitePlanes added{};
+    for (size_t i = 0; i < size_t(kCentreSites); ++i) {
+        const Barycentric& b = sitePoints().barycentrics[i];
         const double share = smoothStep(0, 1, b.x * shares[0] + b.y * shares[1] + b.z * shares[2]);
-        for (size_t c = 0; c < 3; ++c) values[c * n + i] += share * double(inBasis[c]);
+        for (size_t c = 0; c < 3; ++c) added[c][i] = float(share) * inBasis[c];
     }
-    return SplineRefit(mesh.spline(p)).fit(values, mesh.channels()).value();
+    return withAdded(mesh.spline(p), mesh.channels(), added);
 }
 
 }  // namespace
@@ -73,7 +67,6 @@ Touched dragColour(PatchMesh& mesh, PatchId p, const Barycentric& at, glm::dvec3
     const auto ring = ringOf(mesh, p, at);
     Touched touched;
     if (!ring.contains(p)) return touched;
-    for (const auto& [q, shares] : ring) touched.patches.push_back(q);
     // Once more with what the first fit left at the point itself.
     const PatchMesh start = mesh;
     glm::dvec3 change(0);
@@ -82,6 +75,8 @@ Touched dragColour(PatchMesh& mesh, PatchId p, const Barycentric& at, glm::dvec3
         change += now.alpha * (colour - now.srgb);
         for (const auto& [q, shares] : ring) mesh.setSpline(q, changed(start, q, shares, change));
     }
+    for (const auto& [q, shares] : ring)
+        if (mesh.spline(q) != start.spline(q)) touched.patches.push_back(q);
     return touched;
 }
 

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
+#include "core/base/check.h"
+#include "core/base/vector_math.h"
 #include "core/edit/recolour.h"
 #include "core/image/oklab.h"
 
@@ -143,15 +146,34 @@ Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count) {
     return result;
 }
 
-double paletteShare(std::span<const glm::dvec3> entries, double spread, size_t entry, glm::dvec3 lab) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const glm::dvec3& e : entries) least = std::min(least, squaredDistance(e, lab));
-    const auto part = [&](const glm::dvec3& e) {
-        return std::exp((least - squaredDistance(e, lab)) / (2 * spread * spread));
-    };
-    double sum = 0;
-    for (const glm::dvec3& e : entries) sum += part(e);
-    return part(entries[entry]) / sum;
+TESSERA_VECTOR_CLONES
+void paletteShares(std::span<const glm::dvec3> entries, double spread, size_t entry, const float* const* lab,
+                   size_t count, float* shares) {
+    TESSERA_CHECK(entries.size() <= size_t(Palette::kMost));
+    // Of exp(-d^2 / (2 spread^2)), the nearest entry's being 1, so that no colour is too far from all.
+    constexpr size_t kBlock = 32;
+    constexpr float kLeast = -100;  // of the exponents
+    const float *const *planes = lab, factor = float(-std::numbers::log2e / (2 * spread * spread));
+    for (size_t first = 0; first < count; first += kBlock) {
+        const size_t block = std::min(kBlock, count - first);
+        float exponents[Palette::kMost][kBlock], most[kBlock], sum[kBlock] = {};
+        std::fill_n(most, kBlock, -std::numeric_limits<float>::infinity());
+        for (size_t k = 0; k < entries.size(); ++k) {
+            const auto x = float(entries[k].x), y = float(entries[k].y), z = float(entries[k].z);
+            for (size_t i = 0; i < block; ++i) {
+                const float dx = planes[0][first + i] - x, dy = planes[1][first + i] - y,
+                            dz = planes[2][first + i] - z;
+                exponents[k][i] = factor * (dx * dx + dy * dy + dz * dz);
+                most[i] = std::max(most[i], exponents[k][i]);
+            }
+        }
+        for (size_t k = 0; k < entries.size(); ++k)
+            for (size_t i = 0; i < block; ++i) {
+                exponents[k][i] = fastExp2(std::max(exponents[k][i] - most[i], kLeast));
+                sum[i] += exponents[k][i];
+            }
+        for (size_t i = 0; i < block; ++i) shares[first + i] = exponents[entry][i] / sum[i];
+    }
 }
 
 PatchSet patchesOf(const Palette& palette, int entry) {

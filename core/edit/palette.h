@@ -30,9 +30,10 @@ struct Palette {
 // kLeast..kMost; fewer entries where there are fewer colours. The same for the same colours.
 Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count);
 
-// How much of an entry is in a colour, both in OKLab: the shares of all entries are at least 0, 1 in sum, and
-// continuous.
-double paletteShare(std::span<const glm::dvec3> entries, double spread, size_t entry, glm::dvec3 lab);
+// How much of an entry is in each of `count` colours, all in OKLab, the colours in three planes: the shares
+// of all entries are at least 0, 1 in sum, and continuous.
+void paletteShares(std::span<const glm::dvec3> entries, double spread, size_t entry, const float* const* lab,
+                   size_t count, float* shares);
 
 // The patches nearest to an entry.
 PatchSet patchesOf(const Palette& palette, int entry);

@@ -21,11 +21,17 @@ Repaint repaintOf(const ColourShift& shift, const glm::dvec3&) {
     if (shift.hueDegrees == 0 && shift.chromaFactor == 1 && shift.lightnessShift == 0)
         return {AffineColour{}, {}, false};
     const double turn = glm::radians(shift.hueDegrees);
-    const double cosine = shift.chromaFactor * std::cos(turn), sine = shift.chromaFactor * std::sin(turn);
+    const auto cosine = float(shift.chromaFactor * std::cos(turn));
+    const auto sine = float(shift.chromaFactor * std::sin(turn)), lighter = float(shift.lightnessShift);
     return {std::nullopt,
-            [=](const PaintedColour& c) {
-                return fromOklab({c.lab.x + shift.lightnessShift, cosine * c.lab.y - sine * c.lab.z,
-                                  sine * c.lab.y + cosine * c.lab.z});
+            [=](const PaintedColours& colours, SitePlanes& out) {
+                const auto& [l, a, b] = colours.lab;
+                for (size_t i = 0; i < colours.count; ++i) {
+                    out[0][i] = l[i] + lighter;
+                    out[1][i] = cosine * a[i] - sine * b[i];
+                    out[2][i] = sine * a[i] + cosine * b[i];
+                }
+                fromOklab(pointersTo(out).data(), colours.count);
             },
             false};
 }
@@ -47,12 +53,22 @@ Repaint repaintOf(const GradientRecolour& gradient, const glm::dvec3&) {
     if (gradient.strength == 0) return {AffineColour{}, {}, false};
     const glm::dvec2 along = gradient.to - gradient.from;
     const double squared = glm::dot(along, along);
+    // The share of the second colour at a point.
+    const glm::dvec2 slope = squared > 0 ? along / squared : glm::dvec2(0);
+    const auto perX = float(slope.x), perY = float(slope.y), start = float(-glm::dot(gradient.from, slope));
+    const auto strength = float(gradient.strength);
     return {std::nullopt,
-            [=](const PaintedColour& c) {
-                const double share = squared > 0 ? glm::dot(c.point - gradient.from, along) / squared : 0;
-                const glm::dvec3 colour =
-                    glm::mix(gradient.fromColour, gradient.toColour, std::clamp(share, 0.0, 1.0));
-                return glm::mix(c.srgb, colour, gradient.strength);
+            [=](const PaintedColours& colours, SitePlanes& out) {
+                const auto& [x, y] = colours.point;
+                for (int c = 0; c < 3; ++c) {
+                    const auto from = float(gradient.fromColour[c]), to = float(gradient.toColour[c]);
+                    const SitePlane& now = colours.srgb[size_t(c)];
+                    for (size_t i = 0; i < colours.count; ++i) {
+                        const float share = std::clamp(start + perX * x[i] + perY * y[i], 0.F, 1.F);
+                        const float colour = from + share * (to - from);
+                        out[size_t(c)][i] = now[i] + strength * (colour - now[i]);
+                    }
+                }
             },
             true};
 }
@@ -64,8 +80,15 @@ Repaint repaintOf(const PaletteShift& shift, const glm::dvec3&) {
     for (const PaletteEntry& e : shift.palette.entries) labs.push_back(toOklab(e.colour));
     const double spread = shift.palette.spread;
     return {std::nullopt,
-            [=](const PaintedColour& c) {
-                return fromOklab(c.lab + paletteShare(labs, spread, entry, c.lab) * step);
+            [=](const PaintedColours& colours, SitePlanes& out) {
+                const float* const lab[] = {colours.lab[0].data(), colours.lab[1].data(),
+                                            colours.lab[2].data()};
+                SitePlane shares;
+                paletteShares(labs, spread, entry, lab, colours.count, shares.data());
+                for (int c = 0; c < 3; ++c)
+                    for (size_t i = 0; i < colours.count; ++i)
+                        out[size_t(c)][i] = colours.lab[size_t(c)][i] + float(step[c]) * shares[i];
+                fromOklab(pointersTo(out).data(), colours.count);
             },
             false};
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/base/check.h"
-#include "core/edit/spline_edit.h"
+#include "core/edit/site_fit.h"
 #include "core/vectorize/solve_colors.h"
 
 namespace tessera {

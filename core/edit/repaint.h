@@ -1,35 +1,41 @@
 // Repainting patches by a function of colour and place: what all colour edits are made of.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/edit/patch_set.h"
+#include "core/edit/site_planes.h"
 #include "core/edit/spline_edit.h"
 #include "core/edit/touched.h"
 
 namespace tessera {
 
-// A colour as a repainting sees it, and where. Splines overshoot 0..1; functions are asked for the colour
-// that a screen shows, since beyond it OKLab's roots make the wildest things of little.
-struct PaintedColour {
-    glm::dvec3 srgb{0};   // gamma-encoded, not premultiplied, within 0..1
-    glm::dvec3 lab{0};    // the same in OKLab
-    glm::dvec2 point{0};  // px
-    glm::dvec3 whole{0};  // srgb before it was brought into 0..1
+// Colours as a repainting sees them, plane by plane, and where. Splines overshoot 0..1; functions are asked
+// for the colour that a screen shows, since beyond it OKLab's roots make the wildest things of little.
+struct PaintedColours {
+    size_t count = 0;
+    std::array<SitePlane, 3> srgb;   // gamma-encoded, not premultiplied, within 0..1
+    std::array<SitePlane, 3> lab;    // the same in OKLab
+    std::array<SitePlane, 2> point;  // px
+    std::array<SitePlane, 3> whole;  // srgb before it was brought into 0..1
 
-    PaintedColour() = default;
-    explicit PaintedColour(glm::dvec3 colour, glm::dvec2 at = {});
+    // Adds a colour whose OKLab is yet to be made.
+    void add(glm::dvec3 colour, glm::dvec2 at);
+    void makeLab();
 };
 
 struct Repaint {
     // Where there is one the function is not asked.
     std::optional<AffineColour> affine;
-    std::function<glm::dvec3(const PaintedColour&)> function;  // thread-safe
+    // Fills the first `count` of R, G and B; thread-safe.
+    std::function<void(const PaintedColours&, SitePlanes& colours)> function;
     bool dependsOnPoint = false;
 };
 
@@ -48,24 +54,24 @@ class Repainter {
     const PatchMesh& start() const { return mStart; }
 
     // Repaints a mesh that equals the start; the patches that changed. Exact where the repainting is affine
-    // and the weight 1 all over a patch; else fitted (SplineRefit), or made affine where that is as good.
+    // and the weight 1 all over a patch; else made affine and linear in place where that is near enough, with
+    // what is missing fitted (withAdded) where it is not.
     PatchSet apply(PatchMesh& mesh, const Repaint& repaint, Precision precision = Precision::Full) const;
 
   private:
     struct Patch;
+    struct Group;
     using Spline = std::optional<PatchSpline>;  // none where nothing changes
-    static Spline repainted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
-    static Spline refitted(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
-    // None where these points do not settle it.
-    static std::optional<Spline> refittedAt(const PatchMesh& mesh, Patch& patch, const Repaint& repaint,
-                                            const RefitPoints& at);
-    static Spline sketched(const PatchMesh& mesh, Patch& patch, const Repaint& repaint);
+    void look(Group& group) const;
+    void sketch(Group& group, const Repaint& repaint, std::span<Spline> splines) const;
+    Spline repainted(const Patch& patch, const Repaint& repaint) const;
+    Spline refitted(const Patch& patch, const Repaint& repaint, const AffineColour& guess) const;
 
     PatchMesh mStart;
     PatchSet mPatches;
-    // What a patch's repainting needs again and again, found when it is first needed. Each patch is only ever
-    // looked at by one thread at a time.
-    std::shared_ptr<std::vector<Patch>> mCache;
+    // What the frames of a gesture need again and again, found when it is first needed. Each group is only
+    // ever looked at by one thread at a time.
+    std::shared_ptr<std::vector<Group>> mGroups;
 };
 
 }  // namespace tessera

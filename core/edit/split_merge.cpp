@@ -7,7 +7,7 @@
 #include "core/edit/colour_samples.h"
 #include "core/edit/colour_transfer.h"
 #include "core/edit/deformation.h"
-#include "core/edit/spline_edit.h"
+#include "core/edit/site_fit.h"
 #include "core/mesh/jacobian.h"
 #include "core/mesh/mesh_validate.h"
 #include "core/mesh/patch_query.h"
@@ -42,14 +42,12 @@ size_t sideIndex(const HalfedgeMesh& c, HalfedgeId h) {
 // The colours of the whole on a part.
 PatchSpline partSpline(const PatchSpline& whole, int channels, const std::array<Barycentric, 3>& corners) {
     std::vector<Barycentric> points;
-    for (const Barycentric& b : RefitPoints::all().barycentrics)
+    for (const Barycentric& b : sitePoints().barycentrics)
         points.push_back(b.x * corners[0] + b.y * corners[1] + b.z * corners[2]);
     const DomainPoints at(points);
-    std::vector<float> values(at.size() * size_t(channels));
-    float* planes[kMaxChannels];
-    for (size_t c = 0; c < size_t(channels); ++c) planes[c] = values.data() + c * at.size();
-    evaluateSplines(whole, channels, at.x.data(), at.y.data(), at.size(), planes);
-    return SplineRefit(whole).fit(std::vector<double>(values.begin(), values.end()), channels).value();
+    SitePlanes values{};
+    evaluateSplines(whole, channels, at.x.data(), at.y.data(), at.size(), pointersTo(values).data());
+    return fittedLike(whole, channels, values);
 }
 
 // A patch is about to be cut into parts around a new vertex: sets the parts' edges there, interior points,

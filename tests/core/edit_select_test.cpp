@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
 #include <numeric>
 #include <set>
 
@@ -151,6 +155,29 @@ TEST(Palette, FindsTheColoursThatThereAre) {
     EXPECT_NEAR(weight, 1, 1e-9);
     EXPECT_EQ(patchesOf(found, 0).size(), 100U);
     EXPECT_EQ(found.nearest, palette(mesh, means, 8).nearest);
+}
+
+// Shares of the entries in colours near to and far from all of them.
+TEST(Palette, SharesAreOneInSum) {
+    const std::vector<glm::dvec3> entries{{.2, 0, 0}, {.5, .1, .1}, {.9, -.1, 0}};
+    constexpr size_t kCount = 45;
+    std::array<std::array<float, kCount>, 3> planes{};
+    for (size_t i = 0; i < kCount; ++i) planes[0][i] = 4 * float(i) / kCount - 1;
+    for (int c = 0; c < 3; ++c) planes[size_t(c)][7] = float(entries[1][c]);
+    const float* const lab[] = {planes[0].data(), planes[1].data(), planes[2].data()};
+    std::array<float, kCount> sum{}, shares;
+    for (size_t entry = 0; entry < entries.size(); ++entry) {
+        paletteShares(entries, .1, entry, lab, kCount, shares.data());
+        for (size_t i = 0; i < kCount; ++i) {
+            EXPECT_GE(shares[i], 0);
+            sum[i] += shares[i];
+        }
+        const glm::dvec3 off = entries[entry] - entries[1];
+        double all = 0;
+        for (const glm::dvec3& e : entries) all += std::exp(-glm::dot(e - entries[1], e - entries[1]) / .02);
+        EXPECT_NEAR(shares[7], std::exp(-glm::dot(off, off) / .02) / all, 1e-5);
+    }
+    for (const float s : sum) EXPECT_NEAR(s, 1, 1e-5);
 }
 
 TEST(Palette, AnEntryTakesItsPatchesAlong) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <random>
 
 #include "core/image/color_management.h"
@@ -40,6 +42,34 @@ TEST(Oklab, GoesThereAndBackAlsoOutside) {
             EXPECT_NEAR(lch[c], colour[c], 2e-5);
         }
     }
+}
+
+// The planes are what single colours are, and the way back; a count that is no multiple of a vector's.
+TEST(Oklab, PlanesAreAsSingleColours) {
+    constexpr size_t kCount = 157;
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> value(0, 1), size(0, 2);
+    std::array<std::array<float, kCount>, 3> planes;
+    float* const pointers[] = {planes[0].data(), planes[1].data(), planes[2].data()};
+    std::array<glm::dvec3, kCount> colours;
+    for (size_t i = 0; i < kCount; ++i) {
+        // Dark ones too, and black and white.
+        colours[i] = i < 2 ? glm::dvec3(double(i)) : glm::dvec3(value(random), value(random), value(random));
+        if (i > 100) colours[i] *= std::pow(10, -size(random));
+        for (int c = 0; c < 3; ++c) planes[size_t(c)][i] = float(colours[i][c]);
+    }
+    toOklab(pointers, kCount);
+    for (size_t i = 0; i < kCount; ++i)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(planes[size_t(c)][i], toOklab(colours[i])[c], 2e-6) << i;
+    fromOklab(pointers, kCount);
+    for (size_t i = 0; i < kCount; ++i)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(planes[size_t(c)][i], colours[i][c], 4e-5) << i;
+    // Beyond 0..1 the curves go on.
+    float beyond[3] = {1.3F, -.2F, .6F};
+    float* const single[] = {beyond, beyond + 1, beyond + 2};
+    toOklab(single, 1);
+    const glm::dvec3 lab = toOklab({1.3, -.2, .6});
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(beyond[c], lab[c], 2e-5);
 }
 
 TEST(Oklab, HueTurnsInDegreesAndGreyHasNone) {
