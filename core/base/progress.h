@@ -42,4 +42,22 @@ class Progress {
     std::atomic<int64_t> mNextReportNs{0};
 };
 
+// A part of a stage: its fractions are those of the stage from `from` to `to`.
+class ProgressPart {
+  public:
+    // Of the whole stage, where no part is named. `progress` outlives this.
+    ProgressPart(Progress& progress, double from = 0, double to = 1)
+        : mProgress(progress), mFrom(from), mTo(to) {}
+
+    bool step(double fraction) const { return mProgress.step(mFrom + (mTo - mFrom) * fraction); }
+    bool stopRequested() const { return mProgress.stopRequested(); }
+    ProgressPart part(double from, double to) const {
+        return {mProgress, mFrom + (mTo - mFrom) * from, mFrom + (mTo - mFrom) * to};
+    }
+
+  private:
+    Progress& mProgress;
+    double mFrom, mTo;
+};
+
 }  // namespace tessera

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/common.hpp>
 #include <span>
@@ -91,9 +92,9 @@ class EquationBuilder {
         }
     }
 
-    void addCells(Progress& progress);
-    void addSeams(const SeamWeights& weights, Progress& progress);
-    void finish(const Progress& progress);
+    void addCells(const ProgressPart& progress);
+    void addSeams(const SeamWeights& weights, const ProgressPart& progress);
+    void finish(const ProgressPart& progress);
 
     ColorEquations m;
 
@@ -283,13 +284,15 @@ void EquationBuilder::addPatch(PatchId p, const PatchCells& cells, Parts& parts)
         (means * targets).cast<double>();
 }
 
-void EquationBuilder::addCells(Progress& progress) {
+void EquationBuilder::addCells(const ProgressPart& progress) {
     const CellSampler sampler(mMesh, mPicture.grid, mSide);
     const size_t first = mParts.size();
     mParts.resize(first + sampler.patches().size());
+    std::atomic<size_t> done = 0;
     parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
         PatchCells cells;
-        for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
+        for (size_t i = begin; i < end; ++i) {
+            if (!progress.step(double(done++) / double(sampler.patches().size()))) return;
             if (!inReach(sampler.patches()[i])) continue;
             sampler.sample(i, cells);
             if (cells.cells.empty()) continue;
@@ -353,7 +356,7 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
     }
 }
 
-void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
+void EquationBuilder::addSeams(const SeamWeights& weights, const ProgressPart& progress) {
     const HalfedgeMesh& mesh = mMesh.connectivity();
     constexpr double kSamplesPerPx = .7;
     // As many as sites along an edge: fewer points would let colours swing between them.
@@ -375,8 +378,10 @@ void EquationBuilder::addSeams(const SeamWeights& weights, Progress& progress) {
     });
     const size_t first = mParts.size();
     mParts.resize(first + halfedges.size());
+    std::atomic<size_t> done = 0;
     parallelFor(halfedges.size(), 16, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
+        for (size_t i = begin; i < end; ++i) {
+            if (!progress.step(double(done++) / double(halfedges.size()))) return;
             addSide(halfedges[i], m.seams[i], 1, weights, mParts[first + i]);
             addSide(HalfedgeMesh::twin(halfedges[i]), m.seams[i], -1, weights, mParts[first + i]);
             mParts[first + i].shrink();
@@ -413,7 +418,7 @@ void EquationBuilder::gather(ColorEquations::Patch& patch, const std::vector<Par
 }
 
 // Brings the parts together: rows numbered densely, each patch's factors side by side.
-void EquationBuilder::finish(const Progress& progress) {
+void EquationBuilder::finish(const ProgressPart& progress) {
     // The bases were made by one thread; what others allocate from here on would not go where they were.
     mBases = {};
     releaseFreeMemory();
@@ -478,11 +483,11 @@ void EquationBuilder::finish(const Progress& progress) {
 
 ColorEquations buildEquations(const PatchMesh& mesh, const FitPicture& picture,
                               const std::vector<SiteChoice>& choices, const SeamWeights& weights,
-                              int samplesPerSide, Progress& progress) {
+                              int samplesPerSide, const ProgressPart& progress) {
     EquationBuilder builder(mesh, picture, choices, samplesPerSide);
-    builder.addCells(progress);
-    builder.addSeams(weights, progress);
-    if (!progress.stopRequested()) builder.finish(progress);
+    builder.addCells(progress.part(0, .7));
+    builder.addSeams(weights, progress.part(.7, .9));
+    if (progress.step(.9)) builder.finish(progress);
     return std::move(builder.m);
 }
 

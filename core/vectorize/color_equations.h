@@ -66,6 +66,6 @@ struct SeamWeights {
 // says stop.
 ColorEquations buildEquations(const PatchMesh& mesh, const FitPicture& picture,
                               const std::vector<SiteChoice>& choices, const SeamWeights& weights,
-                              int samplesPerSide, Progress& progress);
+                              int samplesPerSide, const ProgressPart& progress);
 
 }  // namespace tessera

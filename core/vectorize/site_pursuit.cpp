@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/base/check.h"
@@ -195,7 +196,7 @@ std::vector<uint8_t> candidateSites(double termsPerPatch) {
 }
 
 std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, double termsPerPatch,
-                                    Progress& progress) {
+                                    const ProgressPart& progress) {
     const size_t capacity = mesh.connectivity().faceCapacity();
     std::vector<SiteChoice> choices(capacity);
     std::vector<Offers> offers(capacity);
@@ -203,9 +204,11 @@ std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture,
     const FitGrid grid{mesh.width(), mesh.height(), picture.width() / mesh.width(), {}};
     const CellSampler sampler(mesh, grid, 1);
     const std::vector<uint8_t> sites = candidateSites(termsPerPatch);
+    std::atomic<size_t> done = 0;
     parallelFor(sampler.patches().size(), 4, [&](size_t begin, size_t end) {
         PatchCells cells;
-        for (size_t i = begin; i < end && !progress.stopRequested(); ++i) {
+        for (size_t i = begin; i < end; ++i) {
+            if (!progress.step(double(done++) / double(sampler.patches().size()))) return;
             sampler.sample(i, cells);
             if (cells.cells.empty()) continue;
             const uint32_t p = sampler.patches()[i].index;

@@ -21,7 +21,7 @@ struct SiteChoice {
 // pixels; over all channels termsPerPatch on the average, at most. `picture`, the mesh's or that enlarged by
 // a whole factor, is in the mesh's basis and has hard steps at features. Empty where progress says stop.
 std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, double termsPerPatch,
-                                    Progress& progress);
+                                    const ProgressPart& progress);
 
 // What a search for so many terms a patch chooses from, the corners first.
 std::vector<uint8_t> candidateSites(double termsPerPatch);

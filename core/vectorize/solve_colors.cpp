@@ -80,7 +80,7 @@ class ChannelSystem {
     }
 
     // The right side and the preconditioner, which a solution needs. False where progress says stop.
-    bool factorize(const Progress& progress) {
+    bool factorize(const ProgressPart& progress) {
         const int channel = mChannel;
         mRight.resize(m.patches.size());
         parallelFor(m.patches.size(), 8, [&](size_t begin, size_t end) {
@@ -182,7 +182,7 @@ class ChannelSystem {
 // Preconditioned conjugate gradients from x (or nothing), until the residual is `tolerance` of that of the
 // patches by themselves.
 PatchVectors conjugateGradients(ChannelSystem& system, PatchVectors x, double tolerance, int& iterations,
-                                Progress& progress) {
+                                const ProgressPart& progress) {
     constexpr int kMaxIterations = 60;
     const size_t count = system.right().size();
     PatchVectors r(count), z(count), d(count), ad(count);
@@ -198,7 +198,9 @@ PatchVectors conjugateGradients(ChannelSystem& system, PatchVectors x, double to
     system.precondition(system.right(), d);
     const double enough = tolerance * tolerance * dot(system.right(), d);
     d = z;
-    for (int i = 0; i < kMaxIterations && rz > enough && !progress.stopRequested(); ++i, ++iterations) {
+    const double first = std::log(rz / enough);
+    for (int i = 0; i < kMaxIterations && rz > enough; ++i, ++iterations) {
+        if (!progress.step(1 - std::log(rz / enough) / first)) break;
         system.apply(d, ad);
         const double alpha = rz / dot(d, ad);
         system.forPatches([&](size_t p) {
@@ -306,11 +308,12 @@ Image inBasis(Image picture, ColourBasis basis) {
 }
 
 Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vector<SiteChoice>& choices,
-                              const VectorizeSettings& settings, StageReport& report, Progress& progress) {
+                              const VectorizeSettings& settings, StageReport& report,
+                              const ProgressPart& progress) {
     const SeamWeights seams{1, settings.seamGradientWeight};
     const ColorEquations equations =
-        buildEquations(mesh, picture, choices, seams, samplesPerSide(picture.grid), progress);
-    if (!progress.step(.6)) return stopped();
+        buildEquations(mesh, picture, choices, seams, samplesPerSide(picture.grid), progress.part(0, .5));
+    if (!progress.step(.5)) return stopped();
     picture = FitPicture(Image());  // a good part of the memory, with large pictures
 
     std::array<PatchVectors, kMaxChannels> factors;
@@ -322,13 +325,14 @@ Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vec
     for (int pass = 0; pass < passes; ++pass) {
         const bool last = pass + 1 == passes;
         for (int c = 0; c < mesh.channels(); ++c) {
+            const double solves = passes * mesh.channels(), before = pass * mesh.channels() + c;
+            const ProgressPart part =
+                progress.part(.5 + .5 * before / solves, .5 + .5 * (before + 1) / solves);
             ChannelSystem system(equations, choices, weights, c);
-            if (!system.factorize(progress)) return stopped();
-            factors[size_t(c)] =
-                conjugateGradients(system, std::move(factors[size_t(c)]), last ? kTolerance : kFirstTolerance,
-                                   iterations, progress);
-            if (!progress.step(.6 + .4 * (pass * mesh.channels() + c + 1) / (passes * mesh.channels())))
-                return stopped();
+            if (!system.factorize(part)) return stopped();
+            factors[size_t(c)] = conjugateGradients(system, std::move(factors[size_t(c)]),
+                                                    last ? kTolerance : kFirstTolerance, iterations, part);
+            if (!part.step(1)) return stopped();
         }
         if (last) break;
         seamWeight = search.next(seamWeight,

@@ -17,7 +17,8 @@ Image inBasis(Image picture, ColourBasis basis);
 
 // Stage "colours", variant "joint": `picture` in the opponent basis, as the result is; `choices` by patch id.
 Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vector<SiteChoice>& choices,
-                              const VectorizeSettings& settings, StageReport& report, Progress& progress);
+                              const VectorizeSettings& settings, StageReport& report,
+                              const ProgressPart& progress);
 
 // The same least squares for the patches alone whose choice has sites; the others are held, and seams toward
 // them count as much. `picture` in the mesh's basis. The patches that were solved, by ascending id.

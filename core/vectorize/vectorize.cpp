@@ -138,11 +138,11 @@ Result<PatchMesh> fitSplines(PatchMesh mesh, const Image& image, Image sharp, co
         picture = FitPicture(mesh, inBasis(image, ColourBasis::Opponent),
                              inBasis(std::move(fine), ColourBasis::Opponent));
     }
-    const auto sites = chooseSites(mesh, sharp, settings.termsPerPatch, progress);
+    const auto sites = chooseSites(mesh, sharp, settings.termsPerPatch, {progress, .05, .25});
     sharp = Image();
-    if (!progress.step(.3)) return stopped();
+    if (!progress.step(.25)) return stopped();
     if (picture.means.empty()) picture = FitPicture(inBasis(image, ColourBasis::Opponent));
-    return solveColors(std::move(mesh), std::move(picture), sites, settings, report, progress);
+    return solveColors(std::move(mesh), std::move(picture), sites, settings, report, {progress, .25, 1});
 }
 
 // The default method: features cut out of their blur, a mesh by the true error of the fit, one joint solve.

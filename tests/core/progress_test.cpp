@@ -119,5 +119,31 @@ TEST(Progress, CallsFromSeveralThreadsNeitherOverlapNorPileUp) {
         EXPECT_GE(std::chrono::duration<double>(calls[i] - calls[i - 1]).count(), .019) << i;
 }
 
+// A report is made of the first step alone here: the others come too soon.
+double reportedBy(double from, double to, double fraction) {
+    double reported = -1;
+    Progress progress({}, [&](std::string_view, double stage, double) { reported = stage; });
+    progress.beginStage("only", 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(25));
+    EXPECT_TRUE(ProgressPart(progress).part(.2, .6).part(from, to).step(fraction));
+    return reported;
+}
+
+TEST(ProgressPart, FractionsAreOfAPartOfAPart) {
+    EXPECT_DOUBLE_EQ(reportedBy(0, 1, 0), .2);
+    EXPECT_DOUBLE_EQ(reportedBy(0, 1, 1), .6);
+    EXPECT_DOUBLE_EQ(reportedBy(.5, 1, .5), .5);
+}
+
+TEST(ProgressPart, KnowsOfAStop) {
+    std::stop_source source;
+    Progress progress(source.get_token());
+    const ProgressPart part(progress, .2, .6);
+    EXPECT_FALSE(part.stopRequested());
+    source.request_stop();
+    EXPECT_TRUE(part.stopRequested());
+    EXPECT_FALSE(part.step(.5));
+}
+
 }  // namespace
 }  // namespace tessera
