@@ -17,9 +17,8 @@ struct MatrixView {
     size_t rowStep, columnStep;
 };
 
-// Four rows of a product: out[r * outStride + j] is the sum over i, from 0 on and before `length`, of left(i,
-// r)
-// * right[i * rightStride + j], for r < 4 and j < columns, a multiple of 8.
+// Four rows of a product: out[r * outStride + j] for r < 4 and j < columns, a multiple of 8, is the sum over
+// i, from 0 on and before `length`, of left's number (i, r) times right[i * rightStride + j].
 void multiplyFour(const MatrixView& left, const double* right, size_t rightStride, size_t length, double* out,
                   size_t outStride, size_t columns);
 

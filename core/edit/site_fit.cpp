@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 
+#include "core/base/row_products.h"
 #include "core/base/vector_clones.h"
 #include "core/mesh/newton_basis.h"
 
@@ -49,16 +50,15 @@ struct Tables {
         std::vector<double> values(kSites * kSites);
         evaluateSiteFunctions(sites, points.domain.x.data(), points.domain.y.data(), kSites, values.data(),
                               kSites);
-        for (size_t s = 0; s < kSites; ++s) {
-            const double* a = values.data() + s * kSites;
-            for (size_t i = 0; i < kSites; ++i) functions[s][i] = float(a[i]);
-            for (size_t t = 0; t <= s; ++t) {
-                const double* b = values.data() + t * kSites;
-                double sum = 0;
-                for (size_t i = 0; i < kSites; ++i) sum += double(points.weights[i]) * a[i] * b[i];
-                products[s][t] = products[t][s] = sum;
+        std::vector<double> weighted(values);
+        for (size_t s = 0; s < kSites; ++s)
+            for (size_t i = 0; i < kSites; ++i) {
+                functions[s][i] = float(values[s * kSites + i]);
+                weighted[s * kSites + i] *= double(points.weights[i]);
             }
-        }
+        const std::vector<double> lower = lowerProducts(weighted, values, kSites, kSites);
+        for (size_t s = 0; s < kSites; ++s)
+            for (size_t t = 0; t <= s; ++t) products[s][t] = products[t][s] = lower[s * kSites + t];
     }
 };
 
