@@ -47,10 +47,10 @@ struct VectorizeSettings {
     double initialSurplus = 2;   // faces of the initial mesh for each patch wanted
     int refineRounds = 4;        // of the true-error stage
     double termsPerPatch = 70;   // of the colour splines, over all channels, on the average
-    int seamPasses = 4;          // solutions from which the weight of seams is found; the first takes 1
+    int seamPasses = 3;          // solutions from which the weight of seams is found; the first takes 1
     // Along edges that are no features the colours of both sides differ by so many levels (of 255) on the
     // mean, and by so many at the 95th percentile, at most.
-    double seamMeanLevels = 2.85;
+    double seamMeanLevels = 2.8;
     double seamHighLevels = 8.7;
     double seamGradientWeight = .005;  // of a squared difference a pixel off, against that on the edge
 
