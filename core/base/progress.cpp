@@ -31,10 +31,13 @@ void Progress::beginStage(std::string_view name, double weight) {
 
 bool Progress::step(double fraction) {
     if (stopRequested()) return false;
-    if (mCallback && nowNs() >= mNextReportNs.load(std::memory_order_relaxed)) {
+    const auto due = [this] { return nowNs() >= mNextReportNs.load(std::memory_order_relaxed); };
+    const bool ends = fraction >= 1;
+    if (mCallback && (ends || due())) {
         const std::lock_guard lock(mMutex);
         // Again under the lock: another thread may have reported while this one waited for it.
-        if (nowNs() >= mNextReportNs.load(std::memory_order_relaxed)) report(std::clamp(fraction, 0.0, 1.0));
+        if (due() || (ends && mTotal < std::min(1.0, mDone + mWeight)))
+            report(std::clamp(fraction, 0.0, 1.0));
     }
     return true;
 }

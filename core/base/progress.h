@@ -22,7 +22,8 @@ class Progress {
     // Starts a stage that takes `weight` of the whole job (the weights of a job's stages add up to 1).
     void beginStage(std::string_view name, double weight);
 
-    // Reports `fraction` (0..1) of the current stage; at most 50 reports a second reach the callback.
+    // Reports `fraction` (0..1) of the current stage; at most 50 reports a second reach the callback, and
+    // the stage's end.
     // Returns false once the job shall stop. Thread-safe.
     bool step(double fraction);
 

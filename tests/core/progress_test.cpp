@@ -56,6 +56,15 @@ TEST(Progress, StagesHaveTheirWeights) {
     EXPECT_DOUBLE_EQ(r.reports[3].total, 1);
 }
 
+TEST(Progress, AStagesEndIsReportedOnceHoweverSoon) {
+    Recorder r;
+    r.progress.beginStage("quick", 1);
+    for (const double fraction : {.5, 1.0, 1.0}) EXPECT_TRUE(r.progress.step(fraction));
+    ASSERT_EQ(r.reports.size(), 2U);
+    EXPECT_EQ(r.reports[1].fraction, 1);
+    EXPECT_EQ(r.reports[1].total, 1);
+}
+
 TEST(Progress, TotalNeverDecreases) {
     Recorder r;
     r.progress.beginStage("only", 1);
