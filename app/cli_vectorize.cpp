@@ -191,7 +191,7 @@ void addVectorizeOptions(CLI::App& command, VectorizeArguments& arguments) {
         ->type_name("0..1");
     command
         .add_option("--max-error", arguments.maxError,
-                    "As many patches as leave this mean error of 255 a channel; two or three runs")
+                    "As many patches as leave this mean error of 255 a channel; one to four runs")
         ->type_name("E");
     addQualityOptions(command, arguments.quality);
     command

@@ -179,7 +179,7 @@ void AmountField::showHint() {
     else if (kind() == Patches)
         mHint->setText(tr("More keep detail; fewer are easier to edit."));
     else if (kind() == Error)
-        mHint->setText(tr("As many patches as it takes: two or three runs."));
+        mHint->setText(tr("As many patches as it takes: one to four runs."));
     else if (mPicture.isEmpty())
         mHint->setText(tr("The same detail takes more patches in a larger picture."));
     else

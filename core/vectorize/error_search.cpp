@@ -12,7 +12,7 @@ namespace tessera {
 namespace {
 
 // A draft takes a fifth of a full run.
-constexpr int kDrafts = 3, kFullRuns = 3;
+constexpr int kDrafts = 3, kFullRuns = 4;
 // Of log error over log patches: what photographs have on the average, and what is believed of two drafts.
 constexpr double kUsualSlope = -.42, kSteepest = -.9, kFlattest = -.08;
 // So close to a draft, as a factor of patches, the error between and beside drafts is known well enough.
@@ -28,7 +28,7 @@ struct Run {
 };
 
 // What a standard run leaves of a draft's error.
-constexpr double kUsualShare = .7;
+constexpr double kUsualShare = .55;
 
 std::string text(double value) {
     char buffer[32];

@@ -19,7 +19,7 @@ constexpr double kErrorTolerance = .03;
 constexpr double kLeastPixelsPerPatch = 6;
 
 // Finds settings.patches: by one to three drafts, which take about a fifth of the time, then by a run as
-// the settings say, and by up to two more where that has missed the error by more than kErrorTolerance. The
+// the settings say, and by up to three more where that has missed the error by more than kErrorTolerance. The
 // report begins with a stage "search" with the patches and the error of each draft, ordered by patches, and
 // of each run; where the last has missed too, its shortfall says why. `observe` sees the runs, not the
 // drafts. Fails as vectorize() and the measure do, and with Usage where the goal is not positive or the
