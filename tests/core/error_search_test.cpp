@@ -51,7 +51,7 @@ TEST(ErrorSearch, ReachesTheErrorOrSaysWhyNot) {
         ASSERT_EQ(result->report.stages.front().stage, "search");
         const auto errors = figures(result->report, " error"), patches = figures(result->report, " patches");
         ASSERT_GE(patches.size(), 2u);
-        EXPECT_LE(patches.size(), 6u);
+        EXPECT_LE(patches.size(), 7u);
         EXPECT_EQ(patches.back(), double(result->mesh.patchCount()));
         EXPECT_EQ(errors.back(), error);
         EXPECT_EQ(errors.front(), wanted);
