@@ -76,6 +76,16 @@ void paint(const Repaint& repaint, const PaintedColours& colours, SitePlanes& pa
     }
 }
 
+// The splines of a large document lie scattered, beyond the caches: asked for this many patches ahead.
+constexpr size_t kAhead = 4;
+
+void prefetch(const PatchSpline& spline) {
+    constexpr size_t kLine = 64 / sizeof(float);
+    __builtin_prefetch(spline.sites.data());
+    for (size_t i = 0; i < spline.coefficients.size(); i += kLine)
+        __builtin_prefetch(spline.coefficients.data() + i);
+}
+
 glm::dvec2 middleOf(const BezierTriangle& shape) {
     return evaluate(shape, Barycentric(1.0 / 3));
 }
@@ -304,6 +314,7 @@ void Repainter::sketch(Group& group, const Repaint& repaint, std::span<Spline> s
     if (!repaint.affine) paint(repaint, group.tangents, tangents);
     if (placed) paint(repaint, group.corners, corners);
     for (size_t i = 0; i < group.patches.size(); ++i) {
+        if (i + kAhead < group.patches.size()) prefetch(mStart.spline(group.patches[i + kAhead].id));
         const Patch& patch = group.patches[i];
         if (patch.untouched()) continue;
         const PatchSpline& spline = mStart.spline(patch.id);
