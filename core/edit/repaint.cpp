@@ -11,6 +11,7 @@
 #include "core/edit/placed_change.h"
 #include "core/edit/site_fit.h"
 #include "core/image/oklab.h"
+#include "core/mesh/prefetch.h"
 
 namespace tessera {
 
@@ -76,15 +77,8 @@ void paint(const Repaint& repaint, const PaintedColours& colours, SitePlanes& pa
     }
 }
 
-// The splines of a large document lie scattered, beyond the caches: asked for this many patches ahead.
+// So many patches ahead a frame asks for splines.
 constexpr size_t kAhead = 4;
-
-void prefetch(const PatchSpline& spline) {
-    constexpr size_t kLine = 64 / sizeof(float);
-    __builtin_prefetch(spline.sites.data());
-    for (size_t i = 0; i < spline.coefficients.size(); i += kLine)
-        __builtin_prefetch(spline.coefficients.data() + i);
-}
 
 glm::dvec2 middleOf(const BezierTriangle& shape) {
     return evaluate(shape, Barycentric(1.0 / 3));

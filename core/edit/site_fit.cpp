@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/base/row_products.h"
-#include "core/base/vector_clones.h"
+#include "core/base/vectors.h"
 #include "core/mesh/newton_basis.h"
 
 namespace tessera {
@@ -26,7 +26,7 @@ constexpr size_t kMostFunctions = kSitePlane + 2 * kLanes;
 // Near enough that no more of a spline's own sites are asked for, where it changes; and what is not seen.
 constexpr double kNear = .2 / 255, kUnseen = .02 / 255;
 
-using Quad = double __attribute__((vector_size(4 * sizeof(double))));
+using Quad = Vector<double, 4>;
 
 TESSERA_INLINE void load(const double* from, Quad& to) {
     std::memcpy(&to, from, sizeof to);
