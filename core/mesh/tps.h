@@ -78,8 +78,8 @@ glm::dvec2 splineGradient(const PatchSpline& spline, int c, glm::dvec2 at);
 void evaluateSplines(const PatchSpline& spline, int channels, const float* x, const float* y, size_t count,
                      float* const* out);
 
-// The instructions that there is code for; Baseline are those that every machine has. Avx2 and Avx512 give the
-// same bits.
+// The instructions that there is code for; Baseline are those that every machine has. Avx2 and Avx512 give
+// the same bits.
 enum class SplineInstructions : uint8_t { Baseline, Avx2, Avx512 };
 const char* nameOf(SplineInstructions instructions);
 // Those that this machine has, the widest last.
