@@ -91,19 +91,22 @@ class PagedArray {
     }
 
     // The memory of the pages that `other` does not share, in bytes, and of the list of pages;
-    // `outside(element)` is what an element holds beyond itself.
+    // `outside(element, before)` is what an element holds beyond itself, and does not share with the one in
+    // its place in `other`, null where there is none.
     template <class Outside>
     size_t bytesBeyond(const PagedArray& other, Outside&& outside) const {
         size_t bytes = mPages.size() * sizeof(mPages[0]);
         for (size_t page = 0; page < mPages.size(); ++page) {
-            if (page < other.mPages.size() && mPages[page] == other.mPages[page]) continue;
+            const Page* const before = page < other.mPages.size() ? other.mPages[page].get() : nullptr;
+            if (mPages[page].get() == before) continue;
             bytes += sizeof(Page);
-            for (const T& element : mPages[page]->at) bytes += outside(element);
+            for (size_t i = 0; i < kPageSize; ++i)
+                bytes += outside(mPages[page]->at[i], before ? before->at + i : nullptr);
         }
         return bytes;
     }
     size_t bytesBeyond(const PagedArray& other) const {
-        return bytesBeyond(other, [](const T&) { return size_t{0}; });
+        return bytesBeyond(other, [](const T&, const T*) { return size_t{0}; });
     }
 
   private:

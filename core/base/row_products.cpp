@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/base/check.h"
-#include "core/base/vector_clones.h"
+#include "core/base/vectors.h"
 
 namespace tessera {
 
@@ -17,7 +17,7 @@ template <class T>
 constexpr size_t kTileColumns = 2 * kVectorBytes / sizeof(T);
 
 template <class T>
-using Lanes __attribute__((vector_size(kVectorBytes), aligned(alignof(T)), may_alias)) = T;
+using Lanes = VectorInMemory<T, kVectorBytes / sizeof(T)>;
 
 TESSERA_VECTOR_CLONES
 void addRowsTo(const double* factors, size_t count, const double* rows, size_t stride,

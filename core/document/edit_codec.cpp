@@ -91,8 +91,7 @@ void writeSpline(ByteWriter& writer, const PatchSpline& spline) {
 
 std::string readSpline(ByteReader& reader, int channels, const SiteLattice& lattice, PatchSpline& spline) {
     for (uint8_t& terms : spline.terms) terms = reader.u8();
-    const auto sites = reader.raw(reader.u8());
-    spline.sites.assign(sites.begin(), sites.end());
+    spline.sites = reader.raw(reader.u8());
     const int centres = reader.u8();
     for (int i = 0; i < centres && !reader.failed(); ++i) {
         const float x = readFloat(reader), y = readFloat(reader);

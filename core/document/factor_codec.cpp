@@ -328,14 +328,16 @@ class FactorCoder {
         }
         if (!codeSize(sites, kCentreSites) || !codeSize(centres, 255))
             return "has a number of centres that cannot be";
-        spline.sites.resize(sites);
+        std::vector<uint8_t> places(spline.sites.begin(), spline.sites.end());
+        places.resize(sites);
         spline.centres.resize(centres);
         spline.coefficients.resize(coefficients);
-        for (uint8_t& s : spline.sites) {
+        for (uint8_t& s : places) {
             uint64_t bits = s;
             mCoder.plainBits(bits, 8);
             s = uint8_t(bits);
         }
+        spline.sites = places;
         for (glm::vec2& p : spline.centres) {
             codeFloat(p.x);
             codeFloat(p.y);

@@ -118,7 +118,7 @@ std::string SiteLattice::adopt(PatchSpline& spline) const {
         if (site >= size()) return "has a list of sites that cannot be";
         spline.centres.push_back(glm::vec2(point(site)));
     }
-    spline.sites.clear();
+    spline.sites = {};
     return {};
 }
 
@@ -216,9 +216,12 @@ std::vector<double> SiteBasis::factors(std::span<const double> values) const {
 PatchSpline SiteBasis::spline(std::span<const std::vector<double>> factors) const {
     PatchSpline spline;
     size_t most = 0;
+    for (size_t c = 0; c < factors.size(); ++c)
+        spline.terms[c] = uint8_t(factors[c].size() > kCorners ? factors[c].size() : 0);
+    spline.coefficients.reserve(spline.offset(int(factors.size())));
     for (size_t c = 0; c < factors.size(); ++c) {
         std::vector<double> left = factors[c];
-        const size_t n = left.size(), terms = n > kCorners ? n : 0;
+        const size_t n = left.size(), terms = spline.terms[c];
         std::vector<double> alphas(terms, 0);
         // Function k is 1 / spread^2 times the kernel about its site and a sum of the functions before it.
         for (size_t k = n; k-- > kCorners;) {
@@ -237,10 +240,9 @@ PatchSpline SiteBasis::spline(std::span<const std::vector<double>> factors) cons
              {left[0], left[1] - left[0], (left[2] - .5 * (left[0] + left[1])) / kDomainHeight})
             spline.coefficients.push_back(float(b));
         for (const double alpha : alphas) spline.coefficients.push_back(float(alpha));
-        spline.terms[c] = uint8_t(terms);
         most = std::max(most, terms);
     }
-    spline.sites.assign(mSites.begin(), mSites.begin() + ptrdiff_t(std::max<size_t>(most, kCorners)));
+    spline.sites = std::span(mSites).first(std::max<size_t>(most, kCorners));
     return spline;
 }
 

@@ -17,7 +17,8 @@ constexpr double kSeamWeight = 1;
 // The centres that a patch has; those of splines without sites are made anew.
 SiteChoice choiceOf(const PatchSpline& spline, int channels) {
     SiteChoice choice;
-    choice.sites = spline.sites.empty() ? usualSites() : spline.sites;
+    choice.sites =
+        spline.sites.empty() ? usualSites() : std::vector<uint8_t>(spline.sites.begin(), spline.sites.end());
     for (size_t c = 0; c < size_t(channels); ++c)
         choice.terms[c] = spline.sites.empty() ? int(choice.sites.size()) : std::max<int>(3, spline.terms[c]);
     return choice;

@@ -11,6 +11,7 @@
 #include "core/edit/placed_change.h"
 #include "core/edit/site_fit.h"
 #include "core/image/oklab.h"
+#include "core/mesh/prefetch.h"
 
 namespace tessera {
 
@@ -75,6 +76,9 @@ void paint(const Repaint& repaint, const PaintedColours& colours, SitePlanes& pa
         for (int c = 0; c < 3; ++c) painted[size_t(c)][i] = float(to[c]);
     }
 }
+
+// So many patches ahead a frame asks for splines.
+constexpr size_t kAhead = 4;
 
 glm::dvec2 middleOf(const BezierTriangle& shape) {
     return evaluate(shape, Barycentric(1.0 / 3));
@@ -304,6 +308,7 @@ void Repainter::sketch(Group& group, const Repaint& repaint, std::span<Spline> s
     if (!repaint.affine) paint(repaint, group.tangents, tangents);
     if (placed) paint(repaint, group.corners, corners);
     for (size_t i = 0; i < group.patches.size(); ++i) {
+        if (i + kAhead < group.patches.size()) prefetch(mStart.spline(group.patches[i + kAhead].id));
         const Patch& patch = group.patches[i];
         if (patch.untouched()) continue;
         const PatchSpline& spline = mStart.spline(patch.id);

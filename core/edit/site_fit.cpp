@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/base/row_products.h"
-#include "core/base/vector_clones.h"
+#include "core/base/vectors.h"
 #include "core/mesh/newton_basis.h"
 
 namespace tessera {
@@ -26,7 +26,7 @@ constexpr size_t kMostFunctions = kSitePlane + 2 * kLanes;
 // Near enough that no more of a spline's own sites are asked for, where it changes; and what is not seen.
 constexpr double kNear = .2 / 255, kUnseen = .02 / 255;
 
-using Quad = double __attribute__((vector_size(4 * sizeof(double))));
+using Quad = Vector<double, 4>;
 
 TESSERA_INLINE void load(const double* from, Quad& to) {
     std::memcpy(&to, from, sizeof to);
@@ -396,7 +396,7 @@ PatchSpline sumOf(const PatchSpline& spline, std::vector<uint8_t> sites, int cha
         most = std::max(most, terms);
     }
     sites.resize(most);
-    result.sites = std::move(sites);
+    result.sites = sites;
     result.coefficients.assign(result.offset(channels), 0.F);
     for (size_t c = 0; c < size_t(channels); ++c) {
         float* const to = result.coefficients.data() + result.offset(int(c));
@@ -418,7 +418,7 @@ bool hasSites(const PatchSpline& spline) {
 
 // Where a fit begins that has nothing to be added to.
 std::vector<uint8_t> firstSites(const PatchSpline& like) {
-    if (hasSites(like)) return like.sites;
+    if (hasSites(like)) return {like.sites.begin(), like.sites.end()};
     return like.maxTerms(kMaxChannels) > 0 ? usualSites() : std::vector<uint8_t>{0, 1, 2};
 }
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-#include "core/base/vector_clones.h"
+#include "core/base/vectors.h"
 #include "core/edit/colour_samples.h"
 #include "core/mesh/tps.h"
 
@@ -36,10 +36,9 @@ inline std::array<float*, kMaxChannels> pointersTo(SitePlanes& planes) {
 // The sum of products; the same bits with all vector instructions.
 TESSERA_INLINE double siteProduct(const SitePlane& a, const SitePlane& b) {
     constexpr size_t kLanes = 8;
-    using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
-    Lanes sum{};
+    Vector<float, kLanes> sum{};
     for (size_t i = 0; i < kSitePlane; i += kLanes) {
-        Lanes x, y;
+        Vector<float, kLanes> x, y;
         std::memcpy(&x, a.data() + i, sizeof x);
         std::memcpy(&y, b.data() + i, sizeof y);
         sum += x * y;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <numeric>
 
-#include "core/base/vector_clones.h"
+#include "core/base/check.h"
+#include "core/base/vectors.h"
 
 namespace tessera {
 
@@ -42,22 +42,24 @@ Mix mixOf(int channels, ColourBasis basis, const AffineColour& change) {
     return mix;
 }
 
-// `length` coefficients of a channel that is made of a spline's.
+// Coefficients of channels side by side, filled up with zeros.
+constexpr size_t kLanes = 4;
+constexpr size_t kMostCoefficients = (size_t(kPolynomials) + 255 + kLanes - 1) / kLanes * kLanes;
+using CoefficientPlanes = std::array<std::array<float, kMostCoefficients>, kMaxChannels>;
+
+// The first `length` coefficients, a multiple of kLanes, of a channel that is made of `channels` others.
 TESSERA_VECTOR_CLONES
-void mixChannel(const PatchSpline& spline, size_t channels,
+void mixChannel(const CoefficientPlanes& from, size_t channels,
                 const std::array<double, kMaxChannels + 1>& shares, size_t length, float* out) {
-    double sum[kPolynomials + 255];
-    std::fill_n(sum, length, 0.0);
-    sum[0] = shares[kMaxChannels];
-    const float* k = spline.coefficients.data();
-    for (size_t from = 0; from < channels; ++from) {
-        const size_t own = size_t(kPolynomials) + spline.terms[from];
-        const double share = shares[from];
-        if (share != 0)
-            for (size_t i = 0; i < own; ++i) sum[i] += share * double(k[i]);
-        k += own;
+    Vector<double, kLanes> constant{shares[kMaxChannels]};
+    for (size_t first = 0; first < length; first += kLanes) {
+        Vector<double, kLanes> sum = constant;
+        for (size_t c = 0; c < channels; ++c)
+            sum += shares[c] * __builtin_convertvector(loadVector<kLanes>(from[c].data() + first),
+                                                       Vector<double, kLanes>);
+        storeVector<kLanes>(out + first, __builtin_convertvector(sum, Vector<float, kLanes>));
+        constant = Vector<double, kLanes>{};
     }
-    for (size_t i = 0; i < length; ++i) out[i] = float(sum[i]);
 }
 
 }  // namespace
@@ -73,22 +75,30 @@ AffineColour tinted(glm::dvec3 colour, double strength) {
 }
 
 PatchSpline mixed(const PatchSpline& spline, int channels, ColourBasis basis, const AffineColour& change) {
-    const Mix mix = mixOf(channels, basis, change);
     const auto count = size_t(channels);
+    TESSERA_CHECK(count <= kMaxChannels);
+    const Mix mix = mixOf(channels, basis, change);
+    const auto whole = [](size_t length) { return (length + kLanes - 1) / kLanes * kLanes; };
     PatchSpline result;
     result.sites = spline.sites;
     result.centres = spline.centres;
-    std::array<size_t, kMaxChannels> lengths{};
-    for (size_t c = 0; c < count; ++c) {
+    for (size_t c = 0; c < count; ++c)
         for (size_t from = 0; from < count; ++from)
             if (mix[c][from] != 0) result.terms[c] = std::max(result.terms[c], spline.terms[from]);
-        lengths[c] = size_t(kPolynomials) + result.terms[c];
-    }
-    result.coefficients.resize(std::accumulate(lengths.begin(), lengths.end(), size_t{0}));
-    float* out = result.coefficients.data();
+    const size_t longest = whole(size_t(kPolynomials) + size_t(spline.maxTerms(channels)));
+    CoefficientPlanes planes;
+    const float* k = spline.coefficients.data();
     for (size_t c = 0; c < count; ++c) {
-        mixChannel(spline, count, mix[c], lengths[c], out);
-        out += lengths[c];
+        const size_t own = size_t(kPolynomials) + spline.terms[c];
+        std::fill(std::copy_n(k, own, planes[c].begin()), planes[c].begin() + ptrdiff_t(longest), 0.F);
+        k += own;
+    }
+    result.coefficients.reserve(result.offset(channels));
+    for (size_t c = 0; c < count; ++c) {
+        std::array<float, kMostCoefficients> made;
+        const size_t length = size_t(kPolynomials) + result.terms[c];
+        mixChannel(planes, count, mix[c], whole(length), made.data());
+        result.coefficients.insert(result.coefficients.end(), made.begin(), made.begin() + ptrdiff_t(length));
     }
     return result;
 }

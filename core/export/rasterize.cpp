@@ -11,15 +11,17 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/vector_clones.h"
 #include "core/mesh/edge_blur.h"
 #include "core/mesh/patch_inverse.h"
+#include "core/mesh/prefetch.h"
 #include "core/mesh/scan_conversion.h"
 
 namespace tessera {
 
 namespace {
 
-constexpr int kTileWidth = 128;
+constexpr int kTileWidth = 256;
 constexpr int kTileHeight = 64;
 
 bool leftOut(const PatchAttributes& a, const RasterizeOptions& options) {
@@ -65,6 +67,12 @@ std::vector<Tile> makeTiles(const ScanConversion& scan, int tileWidth, int tileH
     return tiles;
 }
 
+// Where the pixel centres of a run lie along x: from `origin`, times `factor`.
+TESSERA_VECTOR_CLONES
+void centresOf(const PixelGrid& grid, const PixelRun& run, double origin, double factor, float* x) {
+    for (int i = run.begin; i < run.end; ++i) x[i - run.begin] = float((grid.centreX(i) - origin) * factor);
+}
+
 // Calls emit(batch) with all pixels of the tile, each patch's in batches, patches in descending order.
 template <class Emit>
 void processTile(const PatchMesh& mesh, const ScanConversion& scan, const Tile& tile, Batch& batch,
@@ -73,7 +81,9 @@ void processTile(const PatchMesh& mesh, const ScanConversion& scan, const Tile& 
     std::vector<PixelRun> runs;
     // Sides are drawn to a thousandth of an output pixel.
     const double tolerance = .002 / std::max(grid.scale.x, grid.scale.y);
-    for (const uint32_t index : tile.patches) {
+    for (size_t i = 0; i < tile.patches.size(); ++i) {
+        const uint32_t index = tile.patches[i];
+        if (i + 1 < tile.patches.size()) prefetch(mesh.spline(scan.patches()[tile.patches[i + 1]]));
         batch.patch = scan.patches()[index];
         const PixelRect& box = scan.bounds(index);
         scan.runs(batch.patch,
@@ -93,12 +103,12 @@ void processTile(const PatchMesh& mesh, const ScanConversion& scan, const Tile& 
             const auto y = float((grid.centreY(run.row) - inverse.centre().y) * inverse.inverseSize());
             while (run.begin < run.end) {
                 const int end = std::min(run.end, run.begin + int(Batch::kSize - batch.count));
+                const auto n = size_t(end - run.begin);
                 batch.runs.push_back({run.row, run.begin, end});
-                for (int i = run.begin; i < end; ++i, ++batch.count) {
-                    batch.x[batch.count] =
-                        float((grid.centreX(i) - inverse.centre().x) * inverse.inverseSize());
-                    batch.y[batch.count] = y;
-                }
+                centresOf(grid, batch.runs.back(), inverse.centre().x, inverse.inverseSize(),
+                          batch.x + batch.count);
+                std::fill_n(batch.y + batch.count, n, y);
+                batch.count += n;
                 run.begin = end;
                 if (batch.count == Batch::kSize) flush();
             }
@@ -130,11 +140,10 @@ void blurBatch(const PatchMesh& mesh, const EdgeBlur& blur, const PixelGrid& gri
     alignas(32) float x[Batch::kSize], y[Batch::kSize];
     size_t i = 0;
     for (const PixelRun& run : batch.runs) {
-        const auto rowY = float(grid.centreY(run.row) - batch.centre.y);
-        for (int column = run.begin; column < run.end; ++column, ++i) {
-            x[i] = float(grid.centreX(column) - batch.centre.x);
-            y[i] = rowY;
-        }
+        const auto n = size_t(run.end - run.begin);
+        centresOf(grid, run, batch.centre.x, 1, x + i);
+        std::fill_n(y + i, n, float(grid.centreY(run.row) - batch.centre.y));
+        i += n;
     }
     addBlur(mesh, blur, batch.patch, batch.centre, x, y, batch.count, colours);
 }

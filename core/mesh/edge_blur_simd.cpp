@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/check.h"
-#include "core/base/vector_clones.h"
+#include "core/base/vectors.h"
 #include "core/mesh/edge_blur.h"
 
 namespace tessera {
@@ -17,8 +17,8 @@ namespace {
 
 // Eight points side by side: the compiler makes the machine's instructions of them.
 constexpr size_t kVector = 8;
-using Lanes = float __attribute__((vector_size(kVector * sizeof(float))));
-using Mask = int32_t __attribute__((vector_size(kVector * sizeof(int32_t))));
+using Lanes = Vector<float, kVector>;
+using Mask = Vector<int32_t, kVector>;
 
 struct LaneSegment {
     float fromX, fromY, alongX, alongY, inverse;
@@ -136,16 +136,24 @@ TESSERA_INLINE void footOf(const LaneFeature& f, const Lanes& x, const Lanes& y,
     squared = before < after ? before : after;
 }
 
-// The squares of the points' distances from a segment; counts are whole vectors.
-TESSERA_VECTOR_CLONES void squaredDistances(const LaneSegment& segment, const float* x, const float* y,
-                                            size_t count, float* squared) {
-    for (size_t i = 0; i < count; i += kVector) {
+// The points of `count` that are nearer to a segment than the square root of `limit`, in order, and how many:
+// most vectors of points are out of reach as a whole. There are whole vectors of points.
+TESSERA_VECTOR_CLONES size_t pointsWithin(const LaneSegment& segment, float limit, const float* x,
+                                          const float* y, size_t count, uint16_t* found) {
+    size_t length = 0;
+    for (size_t first = 0; first < count; first += kVector) {
         Lanes px, py, s, d;
-        load(x + i, px);
-        load(y + i, py);
+        load(x + first, px);
+        load(y + first, py);
         nearest(segment, px, py, s, d);
-        store(d, squared + i);
+        if (!any(d < Lanes{} + limit)) continue;
+        for (size_t k = first; k < std::min(first + kVector, count); ++k) {
+            const float squared = d[k - first];
+            found[length] = uint16_t(k);
+            length += size_t(squared < limit);
+        }
     }
+    return length;
 }
 
 // The least and the largest of whole vectors of values.
@@ -241,18 +249,7 @@ class ChainFeet {
         const double limit = reach + f.bend + kSlack;
         const double away = limit + .5 * glm::distance(mBox.lo, mBox.hi);
         if (f.base.nearest(.5 * (mBox.lo + mBox.hi)).second > away * away) return false;
-        const auto limit2 = float(limit * limit);
-        squaredDistances(LaneSegment(f.base, mOrigin), mX, mY, padded(mCount), mFeetSquared);
-        // Most vectors of points are out of reach as a whole.
-        for (size_t first = 0; first < mCount; first += kVector) {
-            Lanes squared;
-            load(mFeetSquared + first, squared);
-            if (!any(squared < Lanes{} + limit2)) continue;
-            for (size_t k = first; k < std::min(first + kVector, mCount); ++k) {
-                mIndex[mFound] = uint16_t(k);
-                mFound += size_t(mFeetSquared[k] < limit2);
-            }
-        }
+        mFound = pointsWithin(LaneSegment(f.base, mOrigin), float(limit * limit), mX, mY, mCount, mIndex);
         return mFound > 0;
     }
 

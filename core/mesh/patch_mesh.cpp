@@ -21,8 +21,9 @@ std::array<LatticePoint, 2> straightControlPoints(LatticePoint a, LatticePoint b
 
 size_t PatchMesh::bytesBeyond(const PatchMesh& other) const {
     const auto ofVector = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    const auto ofSpline = [&](const PatchSpline& spline) {
-        return ofVector(spline.sites) + ofVector(spline.centres) + ofVector(spline.coefficients);
+    const auto ofSpline = [&](const PatchSpline& spline, const PatchSpline* before) {
+        const size_t sites = before && spline.sites.shares(before->sites) ? 0 : spline.sites.size();
+        return sites + ofVector(spline.centres) + ofVector(spline.coefficients);
     };
     return mConnectivity.bytesBeyond(other.mConnectivity) + mPositions.bytesBeyond(other.mPositions) +
            mCurves.bytesBeyond(other.mCurves) + mInteriors.bytesBeyond(other.mInteriors) +

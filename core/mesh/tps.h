@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/shared_list.h"
 #include "core/mesh/bezier.h"
 
 namespace tessera {
@@ -47,8 +48,9 @@ const std::array<glm::dvec2, kCentreSites>& centreSites();
 struct PatchSpline {
     std::array<uint8_t, kMaxChannels> terms{};  // alphas per channel: 0, or 3 and more
     // The centres: places among centreSites(), all different; or, where there are none, points of the
-    // spline's own; or, where there are none of those either, the default ones.
-    std::vector<uint8_t> sites;
+    // spline's own; or, where there are none of those either, the default ones. Recolouring keeps them, so
+    // that all states of a patch share one list.
+    SharedList<uint8_t> sites;
     std::vector<glm::vec2> centres;
     // Channel after channel: b0, b1, b2, alpha_0 .. alpha_(n-1).
     std::vector<float> coefficients;
@@ -76,8 +78,9 @@ glm::dvec2 splineGradient(const PatchSpline& spline, int c, glm::dvec2 at);
 void evaluateSplines(const PatchSpline& spline, int channels, const float* x, const float* y, size_t count,
                      float* const* out);
 
-// The instructions that there is code for. Avx2 and Avx512 give the same bits.
-enum class SplineInstructions : uint8_t { Scalar, Avx2, Avx512 };
+// The instructions that there is code for; Baseline are those that every machine has. Avx2 and Avx512 give
+// the same bits.
+enum class SplineInstructions : uint8_t { Baseline, Avx2, Avx512 };
 const char* nameOf(SplineInstructions instructions);
 // Those that this machine has, the widest last.
 const std::vector<SplineInstructions>& splineInstructions();

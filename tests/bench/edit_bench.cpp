@@ -163,6 +163,21 @@ void measureShape(const PatchMesh& mesh) {
         PatchMesh copy = mesh;
         mergeEdge(copy, EdgeId(uint32_t(i * 501)));
     });
+    for (const uint32_t count : {100U, 3000U}) {
+        const std::string of = ", " + std::to_string(count) + " one after the other";
+        measure("split patches" + of, 1, [&](int) {
+            PatchMesh copy = mesh;
+            for (uint32_t i = 0; i < count; ++i)
+                (void)splitPatch(copy, PatchId(i * 6 % uint32_t(mesh.patchCount())), Barycentric(1.0 / 3));
+        });
+        measure("merge edges" + of, 1, [&](int) {
+            PatchMesh copy = mesh;
+            for (uint32_t i = 0; i < count; ++i) {
+                const EdgeId e(i * 9 % uint32_t(c.edgeCapacity()));
+                if (copy.connectivity().alive(e)) (void)mergeEdge(copy, e);
+            }
+        });
+    }
     const auto changeBy = [&](const char* what, const auto& edit) {
         std::vector<double> changes;
         for (uint32_t i = 0; i < 101; ++i) {

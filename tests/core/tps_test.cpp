@@ -107,12 +107,15 @@ TEST(EvaluateSplines, APointDoesNotDependOnItsNeighbours) {
     }
     std::vector<float> together(3 * 37);
     float* out[] = {together.data(), together.data() + 37, together.data() + 74};
-    evaluateSplines(spline, 3, x.data(), y.data(), 37, out);
-    for (size_t i = 0; i < 37; ++i) {
-        float alone[3];
-        float* aloneOut[] = {alone, alone + 1, alone + 2};
-        evaluateSplines(spline, 3, &x[i], &y[i], 1, aloneOut);
-        for (size_t c = 0; c < 3; ++c) EXPECT_EQ(alone[c], together[37 * c + i]);
+    for (const SplineInstructions instructions : splineInstructions()) {
+        SCOPED_TRACE(nameOf(instructions));
+        evaluateSplinesWith(instructions, spline, 3, x.data(), y.data(), 37, out);
+        for (size_t i = 0; i < 37; ++i) {
+            float alone[3];
+            float* aloneOut[] = {alone, alone + 1, alone + 2};
+            evaluateSplinesWith(instructions, spline, 3, &x[i], &y[i], 1, aloneOut);
+            for (size_t c = 0; c < 3; ++c) EXPECT_EQ(alone[c], together[37 * c + i]);
+        }
     }
 }
 

@@ -130,7 +130,11 @@ inline PatchMesh siteMesh(unsigned seed, int channels, int collapses = 0, int co
             spans[c] = factors[c];
         }
         PatchSpline spline = NewtonBasis(sites).spline({spans.data(), size_t(channels)});
-        if (kind == 5) std::rotate(spline.sites.begin(), spline.sites.begin() + 1, spline.sites.end());
+        if (kind == 5) {
+            std::vector<uint8_t> turned(spline.sites.begin(), spline.sites.end());
+            std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+            spline.sites = turned;
+        }
         if (kind == 6) spline.coefficients.back() += 1;
         mesh.setSpline(p, spline);
     });
