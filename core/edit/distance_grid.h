@@ -23,6 +23,10 @@ class DistanceGrid {
     double distance(glm::dvec2 point) const;
 
   private:
+    template <class Visit>
+    void forEachCell(const LineSegment& segment, Visit&& visit) const;
+    void findEmptyRings();
+
     std::vector<LineSegment> mSegments;
     double mReach;
     glm::dvec2 mOrigin{0};
@@ -30,6 +34,8 @@ class DistanceGrid {
     double mCell = 1;
     std::vector<uint32_t> mFirst;  // by cell, into mEntries
     std::vector<uint32_t> mEntries;
+    std::vector<uint16_t>
+        mEmptyRings;  // by cell: rings of cells around it, itself included, without a segment
 };
 
 }  // namespace tessera
