@@ -116,6 +116,7 @@ class CanvasWidget : public QWidget {
     void follow(const Change& change);
     void remakeOverlay();
     void measureFeatures();
+    void outlineCutOut();
     void outlineSelection();
     ToolEvent toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const;
     ToolKey toolKey(const QKeyEvent& event) const;
@@ -154,6 +155,8 @@ class CanvasWidget : public QWidget {
     OverlayOptions mOverlays;
     CanvasColours mColours;
     std::optional<QColorTransform> mToScreen;  // from sRGB, where the screen has other colours
+    PatchSet mCutOut;
+    std::vector<EdgeId> mCutOutOutline;
     std::vector<EdgeId> mSelectionOutline;
     std::vector<EdgeId> mHighlightOutline;
     QImage mHeatMap;
