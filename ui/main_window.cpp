@@ -98,8 +98,7 @@ void MainWindow::connectActions() {
     on(ActionId::SmallerBrush, [this] { changeBrush(1 / kBrushStep); });
     on(ActionId::CheatSheet, [this] { showCheatSheet(); });
     on(ActionId::About, [this] { showAbout(); });
-    connectSessionActions(
-        a, this, [this] { return mWorkspace.session(); }, mTools, [this](const QString& text) { say(text); });
+    connectSessionActions(a, this, mWorkspace, mTools, [this](const QString& text) { say(text); });
 }
 
 void MainWindow::connectViewActions() {

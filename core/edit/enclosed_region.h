@@ -6,7 +6,7 @@
 namespace tessera {
 
 // The widest gap that can be asked for, image px.
-constexpr double kMostGapPx = 200;
+constexpr double kMostGapPx = 100;
 
 // The patches that can be reached from the seed without crossing a feature or passing a gap: a passage
 // between features (or a feature and the picture's border) that is narrower than gapPx (0..kMostGapPx) and
