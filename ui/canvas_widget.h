@@ -121,6 +121,8 @@ class CanvasWidget : public QWidget {
     ToolEvent toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const;
     ToolKey toolKey(const QKeyEvent& event) const;
     void changeViewAsAsked(const ViewRequest& request);
+    // Whether the photo is what is seen there, for a held O or left of the split view's line.
+    bool seesPhoto(QPointF devicePosition) const;
     bool overSplitLine(QPointF devicePosition) const;
     void setPeeking(bool on);
     void setSpace(bool on);

@@ -84,8 +84,9 @@ void ToolOptionsBar::makeColourPages() {
     const auto second = [](ToolOptions& o) -> glm::dvec3& { return o.secondColour; };
     const auto feather = [](ToolOptions& o) -> double& { return o.featherPx; };
 
-    const Page eyedropper = addPage(ToolId::Eyedropper, tr("Eyedropper"),
-                                    tr("Shift gives the colour to the selection, Alt swaps the source"));
+    const Page eyedropper = addPage(
+        ToolId::Eyedropper, tr("Eyedropper"),
+        tr("Shift gives the colour to the selection, Alt swaps the source, O held picks from the photo"));
     addColour(eyedropper, tr("Colour"), colour);
     addSource(eyedropper);
 

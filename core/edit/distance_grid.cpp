@@ -22,15 +22,15 @@ double squaredDistance(const LineSegment& segment, glm::dvec2 point) {
 
 }  // namespace
 
-std::vector<LineSegment> segmentsOf(const PatchMesh& mesh, std::span<const EdgeId> edges) {
-    constexpr double kTolerancePx = .02;
+std::vector<LineSegment> segmentsOf(const PatchMesh& mesh, std::span<const EdgeId> edges,
+                                    double tolerancePx) {
     constexpr double kMostSegments = 12;
     std::vector<LineSegment> segments;
     for (const EdgeId e : edges) {
         const BezierCurve curve = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e)));
         const double bend = std::max(glm::length(curve.p[0] - 2. * curve.p[1] + curve.p[2]),
                                      glm::length(curve.p[1] - 2. * curve.p[2] + curve.p[3]));
-        const double count = std::ceil(std::sqrt(.75 * bend / kTolerancePx));  // a chord's sagitta
+        const double count = std::ceil(std::sqrt(.75 * bend / tolerancePx));  // a chord's sagitta
         const int steps = int(std::clamp(count, 1., kMostSegments));
         glm::dvec2 from = curve.p[0];
         for (int i = 1; i <= steps; ++i) {

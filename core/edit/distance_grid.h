@@ -12,8 +12,9 @@ namespace tessera {
 
 using LineSegment = std::pair<glm::dvec2, glm::dvec2>;
 
-// Curves as segments, fine enough to take them for the curves (within a fiftieth of a px or so).
-std::vector<LineSegment> segmentsOf(const PatchMesh& mesh, std::span<const EdgeId> edges);
+// Curves as segments within tolerancePx of them or so.
+std::vector<LineSegment> segmentsOf(const PatchMesh& mesh, std::span<const EdgeId> edges,
+                                    double tolerancePx = .02);
 
 class DistanceGrid {
   public:

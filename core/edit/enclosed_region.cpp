@@ -19,6 +19,7 @@ namespace {
 
 // A passage is a gap where it is narrower than this share of the regions that it joins.
 constexpr double kGapShare = .5;
+constexpr double kWallTolerancePx = .25;
 constexpr Barycentric kCentre(1. / 3, 1. / 3, 1. / 3);
 
 // A place where one may be: a patch's centre, the middle of an edge, a vertex that is not on a wall.
@@ -106,7 +107,7 @@ class Ground {
             }
         std::sort(walls.begin(), walls.end());
         walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
-        return segmentsOf(mMesh, walls);
+        return segmentsOf(mMesh, walls, kWallTolerancePx);
     }
 
     uint32_t add(uint32_t& place, glm::dvec2 at) {

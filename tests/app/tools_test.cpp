@@ -307,6 +307,14 @@ TEST_F(ToolsTest, TheEyedropperPicksFromTheOriginalToo) {
     pointer.modifiers.alt = true;
     pointer.click({25, 25});
     EXPECT_NEAR(glm::distance(tools.options().colour, {.5, .25, .25}), 0, 1e-6);
+    pointer.modifiers = {};
+    pointer.click({25, 25});
+    EXPECT_NEAR(glm::distance(tools.options().colour, {.8, .3, .2}), 0, 1e-6);
+    // What is seen is what is picked: O is held.
+    const ToolEvent onPhoto{.point = {25, 25}, .onPhoto = true};
+    tools.press(onPhoto);
+    tools.release(onPhoto);
+    EXPECT_NEAR(glm::distance(tools.options().colour, {.5, .25, .25}), 0, 1e-6);
 }
 
 TEST_F(ToolsTest, AStrokeIsOneStep) {
