@@ -156,18 +156,19 @@ void Workspace::edit(const Result<ElementEdit>& edit) {
 void Workspace::startEdit(ElementEdit edit) {
     // It goes with the job, where that goes first, and gives back the state before.
     const auto open = std::make_shared<EditSession>(*mCurrent, edit.text);
-    const auto deliver = [this, open](Result<EditedMesh> result) {
+    const QPointer<DocumentSession> target = mCurrent;
+    const auto deliver = [this, open, target, text = edit.text](Result<EditedMesh> result) {
+        open->cancel();
+        if (!target) return;
         if (!result) {
-            open->cancel();
             if (result.error().code == ErrorCode::Stopped) return;
             emit said({.kind = Message::Kind::Info, .text = asSentence(result.error().message)});
             return;
         }
-        (void)open->preview([&](PatchMesh& mesh) -> Result<Touched> {
+        (void)applyEdit(*target, text, [&](PatchMesh& mesh) -> Result<Touched> {
             mesh = std::move(result->mesh);
             return std::move(result->edited.touched);
         });
-        open->commit();
         if (!result->edited.remark.isEmpty())
             emit said({.kind = Message::Kind::Info, .text = result->edited.remark});
     };
