@@ -7,8 +7,7 @@
 namespace tessera {
 
 // All return what failed as one sentence, and then change nothing; no selection of the right kind is a
-// failure too (Usage). Those that return a text do it to each of what is selected, or fail where none can be
-// edited; the text is one sentence about those that were left as they are, empty where there are none.
+// failure too (Usage). Edits that take longer are in element_edits.h.
 
 // In one go; RecolourGesture is for sliders.
 Result<void> recolourSelection(DocumentSession& session, const QString& text, const Recolouring& how,
@@ -25,17 +24,7 @@ Result<void> clearFlag(DocumentSession& session, PatchFlag flag);
 // all of the selected patches is another one since.
 Result<void> resetColours(DocumentSession& session);
 Result<void> resetShape(DocumentSession& session);
-// Of the selected patches, from the photo.
-Result<void> refitColours(DocumentSession& session);
-
-// Of the selected curves. Their vertices and handles do not count.
-Result<QString> setFeature(DocumentSession& session, bool feature);
+// Of the selected curves.
 Result<void> setBlur(DocumentSession& session, double sigmaStart, double sigmaEnd);
-// Curves that follow each other move together where they can.
-Result<QString> snapToFeature(DocumentSession& session);
-// At the middle.
-Result<QString> splitCurves(DocumentSession& session);
-Result<QString> mergeCurves(DocumentSession& session);
-Result<QString> splitPatches(DocumentSession& session);
 
 }  // namespace tessera

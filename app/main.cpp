@@ -21,10 +21,12 @@ int main(int argc, char** argv) {
 
     tessera::MainWindow window;
     window.show();
-    window.offerRecovery();
-    if (!parser.positionalArguments().isEmpty()) {
+    if (parser.positionalArguments().isEmpty()) {
+        window.offerRecovery();
+    } else {
         window.open(parser.positionalArguments().first());
         if (parser.isSet(vectorize)) window.vectorizeWhenOpen();
+        window.mentionRecovery();
     }
     return QApplication::exec();
 }

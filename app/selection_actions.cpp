@@ -21,12 +21,6 @@ void editStored(DocumentSession& session, const QString& text,
                     [&](Document& document) { edit(document.selections); });
 }
 
-PatchSet selectableOf(const PatchMesh& mesh, PatchSet set) {
-    set = alive(mesh, set);
-    std::erase_if(set, [&](PatchId p) { return !selectable(mesh, p); });
-    return set;
-}
-
 }  // namespace
 
 void selectAll(DocumentSession& session) {
@@ -76,7 +70,8 @@ void storeSelection(DocumentSession& session, const QString& name) {
 void recallSelection(DocumentSession& session, const QString& name, SelectMode mode) {
     const NamedSelection* stored = findStored(session.document(), name);
     if (!stored) return;
-    const PatchSet found = selectableOf(session.document().mesh, stored->patches);
+    const PatchMesh& mesh = session.document().mesh;
+    const PatchSet found = selectableOf(mesh, alive(mesh, stored->patches));
     session.selection().setPatches(combined(session.selection().patches(), found, mode));
 }
 

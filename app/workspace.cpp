@@ -130,6 +130,7 @@ void Workspace::close(DocumentSession* session, const AskToClose& ask, std::func
     const auto finished = [then](bool closed) {
         if (then) then(closed);
     };
+    stopAll(JobKind::Edit, session);
     session->whenIdle([this, target, ask, finished] {
         if (Job* job = find(JobKind::Save, target)) {
             // It may make the question needless.

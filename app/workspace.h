@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "app/document_session.h"
+#include "app/element_edits.h"
 #include "app/jobs/export_job.h"
 #include "app/jobs/job.h"
 #include "app/jobs/vectorize_job.h"
@@ -78,6 +79,9 @@ class Workspace : public QObject {
     void save(const QString& path, bool embedPhoto, std::function<void(bool)> then = {});
     void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void(bool)> then);
     void exportPicture(const ExportRequest& request);
+    // Makes an edit of the current document one step: at once where it is small, else by a job, during which
+    // an EditSession is open. Says what could not be edited, or why nothing could.
+    void edit(const Result<ElementEdit>& edit);
 
     // Of all documents, those to come included.
     void setHistoryLimit(size_t bytes);
@@ -115,6 +119,7 @@ class Workspace : public QObject {
     void remove(DocumentSession* session);
     void applyVectorized(DocumentSession& session, uint64_t revision, Vectorized vectorized);
     void applyRelinked(DocumentSession& session, OpenedFile opened, const QString& path);
+    void startEdit(ElementEdit edit);
     void startSave(DocumentSession& session, const QString& path, bool embedPhoto,
                    std::function<void(bool)> then);
     Job* find(JobKind kind, const DocumentSession* session) const;

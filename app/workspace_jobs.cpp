@@ -5,10 +5,18 @@
 #include <utility>
 
 #include "app/jobs/draft_job.h"
+#include "app/jobs/element_edit_job.h"
 #include "app/jobs/save_job.h"
 #include "app/workspace.h"
 
 namespace tessera {
+
+namespace {
+
+// So many elements take less than a tenth of a second.
+constexpr size_t kEditedAtOnce = 50;
+
+}  // namespace
 
 bool Workspace::canVectorize() const {
     return mCurrent && mCurrent->photo().image && !running(JobKind::Vectorize);
@@ -135,6 +143,36 @@ void Workspace::exportPicture(const ExportRequest& request) {
             });
         track(job, target);
     });
+}
+
+void Workspace::edit(const Result<ElementEdit>& edit) {
+    if (!mCurrent) return;
+    if (edit && edit->count > kEditedAtOnce && !mCurrent->editing()) return startEdit(*edit);
+    const Result<QString> made = makeNow(*mCurrent, edit);
+    const QString words = made ? *made : asSentence(made.error().message);
+    if (!words.isEmpty()) emit said({.kind = Message::Kind::Info, .text = words});
+}
+
+void Workspace::startEdit(ElementEdit edit) {
+    // It goes with the job, where that goes first, and gives back the state before.
+    const auto open = std::make_shared<EditSession>(*mCurrent, edit.text);
+    const QPointer<DocumentSession> target = mCurrent;
+    const auto deliver = [this, open, target, text = edit.text](Result<EditedMesh> result) {
+        open->cancel();
+        if (!target) return;
+        if (!result) {
+            if (result.error().code == ErrorCode::Stopped) return;
+            emit said({.kind = Message::Kind::Info, .text = asSentence(result.error().message)});
+            return;
+        }
+        (void)applyEdit(*target, text, [&](PatchMesh& mesh) -> Result<Touched> {
+            mesh = std::move(result->mesh);
+            return std::move(result->edited.touched);
+        });
+        if (!result->edited.remark.isEmpty())
+            emit said({.kind = Message::Kind::Info, .text = result->edited.remark});
+    };
+    track(startElementEditJob(this, open->start(), std::move(edit), deliver), mCurrent);
 }
 
 Job* Workspace::find(JobKind kind, const DocumentSession* session) const {

@@ -81,7 +81,12 @@ ToolEvent CanvasWidget::toolEvent(QPointF position, Qt::KeyboardModifiers modifi
     const QPointF image = toImage(position);
     return {.point = {image.x(), image.y()},
             .pxPerScreenPx = devicePixelRatioF() / mView.scale(),
-            .modifiers = modifiersOf(modifiers)};
+            .modifiers = modifiersOf(modifiers),
+            .onPhoto = seesPhoto(position * devicePixelRatioF())};
+}
+
+bool CanvasWidget::seesPhoto(QPointF devicePosition) const {
+    return showsPhoto() || (mSplit && hasOriginal() && devicePosition.x() < mSplitAt * deviceSize().width());
 }
 
 ToolKey CanvasWidget::toolKey(const QKeyEvent& event) const {

@@ -17,6 +17,7 @@ constexpr double kGridFromScale = 8;
 constexpr double kLensPx = 110;
 constexpr double kTagTextPx = 12;
 const LineStyle kSelection{QColor(64, 169, 255), QColor(255, 255, 255, 235), 1.6, 3.8};
+const LineStyle kCutOut{QColor(255, 255, 255), QColor(40, 44, 52), 1.2, 2.6, true};
 const LineStyle kHighlight{QColor(255, 255, 255), QColor(0, 0, 0, 200), 1.8, 4.2};
 
 // Draws the part of `image`, which fills `area` (screen), that is within `clip`. Only that part: scaling a
@@ -157,6 +158,8 @@ void CanvasWidget::paintOverlays(QPainter& painter) const {
     const double ratio = devicePixelRatioF();
     mOverlay.paint(painter, mView, deviceRect(), ratio, mOverlays);
     if (mOverlays.centres) paintCentres(painter, mMesh, mView, deviceRect(), ratio);
+    // Tells what is cut out from what is hidden, where nothing is drawn either.
+    mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mCutOutOutline, kCutOut);
     mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mHighlightOutline, kHighlight);
     mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mSelectionOutline, kSelection);
     if (toolsInUse())

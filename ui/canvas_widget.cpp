@@ -131,6 +131,7 @@ void CanvasWidget::follow(const Change& change) {
                 for (const HalfedgeId h : mMesh.connectivity().sides(p))
                     edges.push_back(HalfedgeMesh::edge(h));
         mOverlay.update(mMesh, edges);
+        if (!change.touched.patches.empty()) outlineCutOut();
     }
     update();
 }
@@ -138,12 +139,25 @@ void CanvasWidget::follow(const Change& change) {
 void CanvasWidget::remakeOverlay() {
     mOverlay = OverlayPainter(mMesh);
     mHighlightOutline.clear();
+    mCutOut.clear();
+    mCutOutOutline.clear();
+    outlineCutOut();
     outlineSelection();
     measureFeatures();
 }
 
 void CanvasWidget::measureFeatures() {
     if (mOverlays.tint == FeatureTint::Importance && !mOverlay.measuresJumps()) mOverlay.measureJumps(mMesh);
+}
+
+void CanvasWidget::outlineCutOut() {
+    PatchSet cutOut;
+    mMesh.forEachPatch([&](PatchId p) {
+        if (mMesh.attributes(p).cutOut) cutOut.push_back(p);
+    });
+    if (cutOut == mCutOut) return;
+    mCutOut = std::move(cutOut);
+    mCutOutOutline = outlineEdges(mMesh, mCutOut);
 }
 
 void CanvasWidget::outlineSelection() {

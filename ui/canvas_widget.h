@@ -116,10 +116,13 @@ class CanvasWidget : public QWidget {
     void follow(const Change& change);
     void remakeOverlay();
     void measureFeatures();
+    void outlineCutOut();
     void outlineSelection();
     ToolEvent toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const;
     ToolKey toolKey(const QKeyEvent& event) const;
     void changeViewAsAsked(const ViewRequest& request);
+    // Whether the photo is what is seen there, for a held O or left of the split view's line.
+    bool seesPhoto(QPointF devicePosition) const;
     bool overSplitLine(QPointF devicePosition) const;
     void setPeeking(bool on);
     void setSpace(bool on);
@@ -154,6 +157,8 @@ class CanvasWidget : public QWidget {
     OverlayOptions mOverlays;
     CanvasColours mColours;
     std::optional<QColorTransform> mToScreen;  // from sRGB, where the screen has other colours
+    PatchSet mCutOut;
+    std::vector<EdgeId> mCutOutOutline;
     std::vector<EdgeId> mSelectionOutline;
     std::vector<EdgeId> mHighlightOutline;
     QImage mHeatMap;

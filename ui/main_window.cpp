@@ -98,8 +98,7 @@ void MainWindow::connectActions() {
     on(ActionId::SmallerBrush, [this] { changeBrush(1 / kBrushStep); });
     on(ActionId::CheatSheet, [this] { showCheatSheet(); });
     on(ActionId::About, [this] { showAbout(); });
-    connectSessionActions(
-        a, this, [this] { return mWorkspace.session(); }, mTools, [this](const QString& text) { say(text); });
+    connectSessionActions(a, this, mWorkspace, mTools, [this](const QString& text) { say(text); });
 }
 
 void MainWindow::connectViewActions() {
@@ -161,6 +160,7 @@ void MainWindow::connectWorkspace() {
         if (!mWorkspace.running(JobKind::Open)) mVectorizeWhenOpen = false;
         showBeginning();
         updateActions();
+        mentionWhenOpen();
     });
     connect(mOpening, &OpeningCard::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
@@ -479,22 +479,40 @@ void MainWindow::showCheatSheet() {
     CheatSheet(mActions->keyRows(), (*mActions)[ActionId::CheatSheet]->shortcut(), this).exec();
 }
 
+void MainWindow::findRecoverable() {
+    for (const auto& slot : mRecovery.leftBehind())
+        if (slot->info()) mRecoverable.push_back(slot);
+}
+
 void MainWindow::offerRecovery() {
-    const auto slots_ = mRecovery.leftBehind();
-    std::vector<RecoveryInfo> found;
-    std::vector<std::shared_ptr<RecoverySlot>> whole;
-    for (const auto& slot : slots_)
-        if (const auto info = slot->info()) {
-            found.push_back(*info);
-            whole.push_back(slot);
-        }
+    findRecoverable();
+    askWhatToRecover();
+}
+
+void MainWindow::askWhatToRecover() {
+    const auto found = std::exchange(mRecoverable, {});
     if (found.empty()) return;
-    RecoveryDialog dialog(found, this);
+    std::vector<RecoveryInfo> infos;
+    for (const auto& slot : found) infos.push_back(slot->info().value_or(RecoveryInfo{}));
+    RecoveryDialog dialog(infos, this);
     dialog.exec();
     for (const size_t i : dialog.chosen()) {
-        if (dialog.answer() == RecoveryDialog::Answer::Recover) mAutosave.recover(whole[i]);
-        if (dialog.answer() == RecoveryDialog::Answer::Discard) whole[i]->forget();
+        if (dialog.answer() == RecoveryDialog::Answer::Recover) mAutosave.recover(found[i]);
+        if (dialog.answer() == RecoveryDialog::Answer::Discard) found[i]->forget();
     }
+}
+
+void MainWindow::mentionRecovery() {
+    findRecoverable();
+    mMentionRecovery = !mRecoverable.empty();
+    mentionWhenOpen();
+}
+
+void MainWindow::mentionWhenOpen() {
+    if (mWorkspace.running(JobKind::Open) || !std::exchange(mMentionRecovery, false)) return;
+    mMessages->show({.text = tr("Tessera ended before some changes were saved. They were autosaved."),
+                     .actionText = tr("Recover…"),
+                     .action = [this] { askWhatToRecover(); }});
 }
 
 void MainWindow::showAbout() {

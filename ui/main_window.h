@@ -49,6 +49,8 @@ class MainWindow : public QMainWindow {
     void saveTo(const QString& path);
     // Offers the documents that a run before this one could not save, if there are any.
     void offerRecovery();
+    // The same without being in the way: a word, once the file that is being opened is there.
+    void mentionRecovery();
 
     Workspace& workspace() { return mWorkspace; }
     ToolManager& tools() { return mTools; }
@@ -67,6 +69,9 @@ class MainWindow : public QMainWindow {
     void showEvent(QShowEvent* event) override;
 
   private:
+    void findRecoverable();
+    void askWhatToRecover();
+    void mentionWhenOpen();
     // main_window_layout.cpp
     void buildLayout();
     QWidget* makeCentre();
@@ -152,6 +157,8 @@ class MainWindow : public QMainWindow {
     QMenu* mRecent = nullptr;
     std::optional<ExportRequest> mLastExport;
     bool mVectorizeWhenOpen = false;
+    bool mMentionRecovery = false;
+    std::vector<std::shared_ptr<RecoverySlot>> mRecoverable;  // whole documents of a run before this one
     bool mClosing = false;
     RecoveryStore mRecovery;
     Workspace mWorkspace;  // after all that its jobs report to: it goes before them

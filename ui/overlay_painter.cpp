@@ -139,10 +139,16 @@ void drawLines(QPainter& painter, const std::vector<QLineF>& lines, const QColor
     painter.drawLines(lines.data(), int(lines.size()));
 }
 
+std::vector<QLineF> everyOther(const std::vector<QLineF>& lines) {
+    std::vector<QLineF> kept;
+    for (size_t i = 0; i < lines.size(); i += 2) kept.push_back(lines[i]);
+    return kept;
+}
+
 void drawTwoTone(QPainter& painter, const std::vector<QLineF>& lines, const LineStyle& style,
                  double pixelRatio, bool halo) {
     if (halo) drawLines(painter, lines, style.halo, style.haloPx * pixelRatio);
-    drawLines(painter, lines, style.core, style.corePx * pixelRatio);
+    drawLines(painter, style.dashed ? everyOther(lines) : lines, style.core, style.corePx * pixelRatio);
 }
 
 QRectF markAt(QPointF centre, double size) {
@@ -238,7 +244,11 @@ void OverlayPainter::paintOutline(QPainter& painter, const ViewTransform& view, 
     std::vector<Shown> found;
     for (const EdgeId e : edges) appendShown(found, mCurves[e.index], view, window);
     std::vector<QLineF> lines;
-    for (const Shown& edge : found) appendCurve(lines, edge, clip, pixelRatio);
+    for (Shown& edge : found) {
+        // Dashes are the segments, every other one.
+        if (style.dashed) edge.straight = false;
+        appendCurve(lines, edge, clip, pixelRatio);
+    }
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing);
     drawTwoTone(painter, lines, style, pixelRatio, true);

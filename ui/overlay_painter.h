@@ -34,6 +34,7 @@ struct LineStyle {
     QColor halo;
     double corePx;
     double haloPx;
+    bool dashed = false;  // the core alone
 };
 
 // The curves of one state of a mesh in flat arrays, made once, so that a frame costs a pass over the boxes

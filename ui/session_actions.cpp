@@ -1,8 +1,6 @@
 // See session_actions.h.
 #include "ui/session_actions.h"
 
-#include <QCursor>
-#include <QGuiApplication>
 #include <array>
 
 #include "app/edit_actions.h"
@@ -31,51 +29,50 @@ enum Needs : unsigned {
 struct SessionAction {
     ActionId id;
     unsigned needs;
-    // What there is to say: a failure, or a remark, or nothing.
-    QString (*run)(DocumentSession&, const ToolManager&);
+    // What there is to say, if anything.
+    QString (*run)(Workspace&, const ToolManager&);
 };
 
 QString wordsOf(const Result<void>& result) {
     return result ? QString() : asSentence(result.error().message);
 }
 
-QString wordsOf(const Result<QString>& result) {
-    return result ? *result : asSentence(result.error().message);
-}
-
 template <void (*kRun)(DocumentSession&)>
-QString always(DocumentSession& session, const ToolManager&) {
-    kRun(session);
+QString always(Workspace& workspace, const ToolManager&) {
+    kRun(*workspace.session());
     return {};
 }
 
 template <Result<void> (*kRun)(DocumentSession&)>
-QString perhaps(DocumentSession& session, const ToolManager&) {
-    return wordsOf(kRun(session));
+QString perhaps(Workspace& workspace, const ToolManager&) {
+    return wordsOf(kRun(*workspace.session()));
 }
 
-template <Result<QString> (*kRun)(DocumentSession&)>
-QString perhaps(DocumentSession& session, const ToolManager&) {
-    return wordsOf(kRun(session));
+// The workspace says what there is to say of these.
+template <Result<ElementEdit> (*kPrepare)(const DocumentSession&)>
+QString elements(Workspace& workspace, const ToolManager&) {
+    workspace.edit(kPrepare(*workspace.session()));
+    return {};
 }
 
 template <PatchFlag kFlag, bool kOn>
-QString flag(DocumentSession& session, const ToolManager&) {
-    return wordsOf(setFlag(session, kFlag, kOn));
+QString flag(Workspace& workspace, const ToolManager&) {
+    return wordsOf(setFlag(*workspace.session(), kFlag, kOn));
 }
 
 template <PatchFlag kFlag>
-QString clear(DocumentSession& session, const ToolManager&) {
-    return wordsOf(clearFlag(session, kFlag));
+QString clear(Workspace& workspace, const ToolManager&) {
+    return wordsOf(clearFlag(*workspace.session(), kFlag));
 }
 
 template <bool kOn>
-QString feature(DocumentSession& session, const ToolManager&) {
-    return wordsOf(setFeature(session, kOn));
+QString feature(Workspace& workspace, const ToolManager&) {
+    workspace.edit(setFeature(*workspace.session(), kOn));
+    return {};
 }
 
-QString similar(DocumentSession& session, const ToolManager& tools) {
-    selectSimilar(session, tools.options().wand);
+QString similar(Workspace& workspace, const ToolManager& tools) {
+    selectSimilar(*workspace.session(), tools.options().wand);
     return {};
 }
 
@@ -88,17 +85,17 @@ const std::array kSessionActions{
     SessionAction{ActionId::SelectSimilar, kPatches, similar},
     SessionAction{ActionId::ResetColours, kPatches, perhaps<resetColours>},
     SessionAction{ActionId::ResetShape, kPatches, perhaps<resetShape>},
-    SessionAction{ActionId::RefitColours, kPatches | kPhoto, perhaps<refitColours>},
+    SessionAction{ActionId::RefitColours, kPatches | kPhoto, elements<refitColours>},
     SessionAction{ActionId::Hide, kPatches, flag<PatchFlag::Hidden, true>},
     SessionAction{ActionId::ShowAll, kHidden, clear<PatchFlag::Hidden>},
     SessionAction{ActionId::Lock, kPatches, flag<PatchFlag::Locked, true>},
     SessionAction{ActionId::UnlockAll, kLocked, clear<PatchFlag::Locked>},
     SessionAction{ActionId::CutOut, kOpaque, flag<PatchFlag::CutOut, true>},
     SessionAction{ActionId::FillIn, kCutOut, flag<PatchFlag::CutOut, false>},
-    SessionAction{ActionId::SplitPatches, kPatches, perhaps<splitPatches>},
-    SessionAction{ActionId::SplitCurves, kCurves, perhaps<splitCurves>},
-    SessionAction{ActionId::MergeCurves, kCurves, perhaps<mergeCurves>},
-    SessionAction{ActionId::SnapToFeature, kCurves | kPhoto, perhaps<snapToFeature>},
+    SessionAction{ActionId::SplitPatches, kPatches, elements<splitPatches>},
+    SessionAction{ActionId::SplitCurves, kCurves, elements<splitCurves>},
+    SessionAction{ActionId::MergeCurves, kCurves, elements<mergeCurves>},
+    SessionAction{ActionId::SnapToFeature, kCurves | kPhoto, elements<snapToFeature>},
     SessionAction{ActionId::MarkFeature, kPlain, feature<true>},
     SessionAction{ActionId::UnmarkFeature, kFeature, feature<false>},
 };
@@ -122,17 +119,13 @@ unsigned offered(const DocumentSession& session) {
 
 }  // namespace
 
-void connectSessionActions(const ActionTable& actions, QObject* receiver,
-                           std::function<DocumentSession*()> session, const ToolManager& tools,
-                           std::function<void(const QString&)> say) {
+void connectSessionActions(const ActionTable& actions, QObject* receiver, Workspace& workspace,
+                           const ToolManager& tools, std::function<void(const QString&)> say) {
     for (const SessionAction& action : kSessionActions)
-        QObject::connect(actions[action.id], &QAction::triggered, receiver, [=, &tools] {
-            DocumentSession* current = session();
-            if (!current || !current->hasMesh()) return;
-            // Splits, merges and fits of very many patches take seconds.
-            QGuiApplication::setOverrideCursor(Qt::WaitCursor);
-            const QString words = action.run(*current, tools);
-            QGuiApplication::restoreOverrideCursor();
+        QObject::connect(actions[action.id], &QAction::triggered, receiver, [=, &workspace, &tools] {
+            const DocumentSession* session = workspace.session();
+            if (!session || !session->hasMesh()) return;
+            const QString words = action.run(workspace, tools);
             if (!words.isEmpty()) say(words);
         });
 }

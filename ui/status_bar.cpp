@@ -66,6 +66,23 @@ QString leftText(double seconds) {
     return QObject::tr("about %1 min left").arg(int(std::lround(seconds / kMinute)));
 }
 
+// How many patches are not as any other, each kind named where there are some.
+QString statesText(const PatchMesh& mesh) {
+    size_t hidden = 0, locked = 0, cutOut = 0;
+    mesh.forEachPatch([&](PatchId p) {
+        const PatchAttributes& attributes = mesh.attributes(p);
+        hidden += attributes.hidden ? 1 : 0;
+        locked += attributes.locked ? 1 : 0;
+        cutOut += attributes.cutOut ? 1 : 0;
+    });
+    QString text;
+    for (const auto& [count, words] :
+         {std::pair(hidden, StatusBar::tr("%1 hidden")), std::pair(locked, StatusBar::tr("%1 locked")),
+          std::pair(cutOut, StatusBar::tr("%1 cut out"))})
+        if (count > 0) text += words.arg(countText(count)) + "  ·  ";
+    return text;
+}
+
 }  // namespace
 
 QString countText(size_t count) {
@@ -177,7 +194,8 @@ void StatusBar::showCursor(std::optional<QPointF> image, QColor colour) {
 void StatusBar::showCounts(const DocumentSession* session, size_t features) {
     QString text;
     if (session && session->hasMesh()) {
-        text = tr("%1 patches  ·  %2 feature curves")
+        text = statesText(session->document().mesh) +
+               tr("%1 patches  ·  %2 feature curves")
                    .arg(countText(session->document().mesh.patchCount()), countText(features));
         if (const auto& difference = session->document().difference)
             text += tr("  ·  mean error %1").arg(QLocale().toString(difference->mae, 'f', 2));

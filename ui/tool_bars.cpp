@@ -10,6 +10,7 @@
 #include <QSignalBlocker>
 #include <QStackedWidget>
 
+#include "core/edit/enclosed_region.h"
 #include "ui/action_table.h"
 #include "ui/panels/colour_field.h"
 #include "ui/widget_parts.h"
@@ -62,7 +63,12 @@ ToolOptionsBar::ToolOptionsBar(ToolManager& tools, QWidget* parent)
 
 void ToolOptionsBar::makeSelectionPages() {
     const QString modes = tr("Shift adds, Alt subtracts, both intersect");
-    addPage(ToolId::Select, tr("Select"), tr("Double-click: up to the features around. ") + modes);
+    const Page select =
+        addPage(ToolId::Select, tr("Select"), tr("Double-click: up to the features around. ") + modes);
+    addNumber(select, tr("Close gaps"),
+              tr("A double-click does not leave through gaps between features that are narrower than this, "
+                 "in image pixels"),
+              tr(" px"), 0, kMostGapPx, 1, [](ToolOptions& o) -> double& { return o.gapPx; });
     addPage(ToolId::Lasso, tr("Lasso"), modes);
     const Page wand = addPage(ToolId::Wand, tr("Wand"), modes);
     addNumber(wand, tr("Tolerance"), tr("How far colours may be from the one clicked, by how it looks"), {},
@@ -78,8 +84,9 @@ void ToolOptionsBar::makeColourPages() {
     const auto second = [](ToolOptions& o) -> glm::dvec3& { return o.secondColour; };
     const auto feather = [](ToolOptions& o) -> double& { return o.featherPx; };
 
-    const Page eyedropper = addPage(ToolId::Eyedropper, tr("Eyedropper"),
-                                    tr("Shift gives the colour to the selection, Alt swaps the source"));
+    const Page eyedropper = addPage(
+        ToolId::Eyedropper, tr("Eyedropper"),
+        tr("Shift gives the colour to the selection, Alt swaps the source, O held picks from the photo"));
     addColour(eyedropper, tr("Colour"), colour);
     addSource(eyedropper);
 

@@ -15,8 +15,10 @@ const QColor kStop(255, 84, 70);
 const LineStyle kSelectedCurve{kAccent, kDark, 2.2, 4.6};
 const LineStyle kHoveredCurve{QColor(255, 255, 255), kDark, 1.8, 4.2};
 const LineStyle kBlocking{kStop, QColor(40, 0, 0, 190), 2.2, 5};
+const LineStyle kLocked{QColor(255, 255, 255), kDark, 1.4, 3.6, true};
 constexpr double kVertexPx = 8, kControlPx = 7, kBlurPx = 10, kHoverFactor = 1.35;
 constexpr double kSwatchPx = 44, kSwatchOffsetPx = 18;
+constexpr double kLockPx = 26, kLockOffsetPx = 12;
 
 class Painter {
   public:
@@ -85,6 +87,26 @@ class Painter {
         mPainter.drawEllipse(QRectF(corner, QSizeF(kSwatchPx, kSwatchPx) * mRatio));
     }
 
+    // A padlock on a dark disc, beside the pointer.
+    void lock(glm::dvec2 where) {
+        const double size = kLockPx * mRatio;
+        const QRectF disc(at(where) + QPointF(kLockOffsetPx, kLockOffsetPx) * mRatio, QSizeF(size, size));
+        const auto part = [&](double x, double y, double width, double height) {
+            return QRectF(disc.topLeft() + QPointF(x, y) * size, QSizeF(width, height) * size);
+        };
+        mPainter.setPen(QPen(Qt::white, mRatio));
+        mPainter.setBrush(QColor(8, 16, 26, 225));
+        mPainter.drawEllipse(disc);
+        mPainter.setPen(Qt::NoPen);
+        mPainter.setBrush(Qt::white);
+        mPainter.drawRoundedRect(part(.29, .46, .42, .3), .05 * size, .05 * size);
+        mPainter.setBrush(Qt::NoBrush);
+        mPainter.setPen(QPen(Qt::white, .08 * size, Qt::SolidLine, Qt::FlatCap));
+        mPainter.drawArc(part(.37, .24, .26, .34), 0, 180 * 16);
+        mPainter.drawLine(part(.37, .41, 0, .06).topLeft(), part(.37, .41, 0, .06).bottomLeft());
+        mPainter.drawLine(part(.63, .41, 0, .06).topLeft(), part(.63, .41, 0, .06).bottomLeft());
+    }
+
   private:
     QPointF at(glm::dvec2 image) const { return mView.toScreen(toPoint(image)); }
     QRectF box(glm::dvec2 centre, double size) const {
@@ -116,12 +138,13 @@ void paintToolOverlay(QPainter& painter, const ToolOverlay& overlay, const Overl
     };
     outline(overlay.curves, kSelectedCurve);
     if (overlay.hoveredCurve) outline(std::array{*overlay.hoveredCurve}, kHoveredCurve);
-    if (overlay.blocking) {
+    const auto outlinePatch = [&](PatchId p, const LineStyle& style) {
         std::vector<EdgeId> sides;
-        for (const HalfedgeId h : mesh.connectivity().sides(*overlay.blocking))
-            sides.push_back(HalfedgeMesh::edge(h));
-        outline(sides, kBlocking);
-    }
+        for (const HalfedgeId h : mesh.connectivity().sides(p)) sides.push_back(HalfedgeMesh::edge(h));
+        outline(sides, style);
+    };
+    if (overlay.blocking) outlinePatch(*overlay.blocking, kBlocking);
+    if (overlay.lock) outlinePatch(overlay.lock->patch, kLocked);
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing);
     Painter tool(painter, view, pixelRatio);
@@ -129,6 +152,7 @@ void paintToolOverlay(QPainter& painter, const ToolOverlay& overlay, const Overl
     for (const OverlayHandle& handle : overlay.handles) tool.handle(handle);
     if (overlay.marquee) tool.marquee(*overlay.marquee);
     if (!overlay.lasso.empty()) tool.lasso(overlay.lasso);
+    if (overlay.lock) tool.lock(overlay.lock->at);
     if (overlay.ring) tool.ring(*overlay.ring);
     if (overlay.gradient) tool.gradient(*overlay.gradient);
     if (overlay.swatch) tool.swatch(*overlay.swatch);

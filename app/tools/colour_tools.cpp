@@ -9,7 +9,7 @@
 namespace tessera {
 
 void EyedropperTool::hovered(const ToolEvent& event) {
-    ColourSource source = options().eyedropper;
+    ColourSource source = event.onPhoto ? ColourSource::Original : options().eyedropper;
     if (event.modifiers.alt)
         source = source == ColourSource::Vector ? ColourSource::Original : ColourSource::Vector;
     const auto colour = colourAt(session(), event.point, source);

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/edit/select.h"
+#include "core/edit/enclosed_region.h"
 
 namespace tessera {
 
@@ -11,24 +11,50 @@ namespace {
 
 constexpr double kNearlyAll = .75;
 
-PatchSet selectableOnly(const PatchMesh& mesh, PatchSet set) {
-    std::erase_if(set, [&](PatchId p) { return !selectable(mesh, p); });
-    return set;
+}  // namespace
+
+ToolOverlay SelectingTool::overlay() const {
+    ToolOverlay overlay;
+    overlay.lock = mLock;
+    return overlay;
 }
 
-}  // namespace
+std::optional<OverlayLock> SelectingTool::lockAt(glm::dvec2 point) const {
+    const auto hit = session().query().patchAt(point);
+    if (!hit || !mesh().attributes(hit->patch).locked) return {};
+    return OverlayLock{hit->patch, point};
+}
+
+void SelectingTool::hovered(const ToolEvent& event) {
+    mLock = lockAt(event.point);
+}
+
+std::optional<PatchId> SelectingTool::patchClicked(const ToolEvent& event) {
+    mLock = lockAt(event.point);
+    if (mLock) {
+        host().say(QObject::tr("This patch is locked. Unlock All, in the menu Patches, frees it."));
+        return {};
+    }
+    const auto hit = session().query().patchAt(event.point);
+    return hit ? std::optional(hit->patch) : std::nullopt;
+}
+
+void RegionTool::pressed(const ToolEvent& event) {
+    SelectingTool::pressed(event);
+    mBefore = session().selection().patches();
+}
 
 void RegionTool::select(const PatchSet& found, const ToolModifiers& modifiers) {
     session().selection().setPatches(combined(mBefore, found, selectModeOf(modifiers)));
 }
 
 void RegionTool::clicked(const ToolEvent& event) {
-    const auto hit = session().query().patchAt(event.point);
-    select(hit ? selectableOnly(mesh(), {hit->patch}) : PatchSet(), event.modifiers);
+    const auto hit = patchClicked(event);
+    select(hit ? selectableOf(mesh(), {*hit}) : PatchSet(), event.modifiers);
 }
 
 void RegionTool::selectPolygon(std::span<const glm::dvec2> polygon, const ToolModifiers& modifiers) {
-    select(selectableOnly(mesh(), session().query().patchesInPolygon(polygon)), modifiers);
+    select(selectableOf(mesh(), session().query().patchesInPolygon(polygon)), modifiers);
 }
 
 void RegionTool::abandoned() {
@@ -44,19 +70,19 @@ void SelectTool::dragged(const ToolEvent& event) {
 
 void SelectTool::doubleClick(const ToolEvent& event) {
     const auto hit = session().query().patchAt(event.point);
-    if (!hit) return;
+    if (!hit || mesh().attributes(hit->patch).locked) return;
     // In the way of the modifiers, of what the first of the two clicks has left.
     pressed(event);
-    const PatchSet found = enclosedByFeatures(mesh(), hit->patch);
+    const PatchSet found = enclosedByFeatures(mesh(), hit->patch, options().gapPx);
     select(found, event.modifiers);
     if (double(found.size()) > kNearlyAll * double(mesh().patchCount()))
-        host().say(
-            QObject::tr("The features around this place have gaps, so nearly everything is selected. "
-                        "The wand with “Stop at features” keeps to colours too."));
+        host().say(QObject::tr(
+            "The features around this place are far apart, so nearly everything is selected. Close "
+            "wider gaps in the tool's options, or take the wand, which keeps to colours."));
 }
 
 ToolOverlay SelectTool::overlay() const {
-    ToolOverlay overlay;
+    ToolOverlay overlay = RegionTool::overlay();
     if (dragging()) overlay.marquee = mMarquee;
     return overlay;
 }
@@ -68,14 +94,14 @@ void LassoTool::dragged(const ToolEvent& event) {
 }
 
 ToolOverlay LassoTool::overlay() const {
-    ToolOverlay overlay;
+    ToolOverlay overlay = RegionTool::overlay();
     if (dragging()) overlay.lasso = mPolygon;
     return overlay;
 }
 
 void WandTool::clicked(const ToolEvent& event) {
-    const auto hit = session().query().patchAt(event.point);
-    const PatchSet found = hit ? wand(mesh(), session().colours(), hit->patch, options().wand) : PatchSet();
+    const auto hit = patchClicked(event);
+    const PatchSet found = hit ? wand(mesh(), session().colours(), *hit, options().wand) : PatchSet();
     Selection& selection = session().selection();
     selection.setPatches(combined(selection.patches(), found, selectModeOf(event.modifiers)));
 }

@@ -5,14 +5,34 @@
 
 namespace tessera {
 
-// Drags a region that selects the patches whose centres it holds, as it grows. Escape gives back the
-// selection from before.
-class RegionTool : public DragTool {
+// Selects patches, but none that are locked: shows which ones those are.
+class SelectingTool : public DragTool {
   public:
     using DragTool::DragTool;
 
+    ToolOverlay overlay() const override;
+    void forgetHover() override { mLock.reset(); }
+
   protected:
-    void pressed(const ToolEvent&) override { mBefore = session().selection().patches(); }
+    void hovered(const ToolEvent& event) override;
+    void pressed(const ToolEvent&) override { mLock.reset(); }
+    // The patch there; none outside the picture, and none, with a word, where it is locked.
+    std::optional<PatchId> patchClicked(const ToolEvent& event);
+
+  private:
+    std::optional<OverlayLock> lockAt(glm::dvec2 point) const;
+
+    std::optional<OverlayLock> mLock;
+};
+
+// Drags a region that selects the patches whose centres it holds, as it grows. Escape gives back the
+// selection from before.
+class RegionTool : public SelectingTool {
+  public:
+    using SelectingTool::SelectingTool;
+
+  protected:
+    void pressed(const ToolEvent& event) override;
     // Selects the patch under the pointer; none outside the picture.
     void clicked(const ToolEvent& event) override;
     void abandoned() override;
@@ -56,9 +76,9 @@ class LassoTool : public RegionTool {
 };
 
 // Y. Selects what has the colour of the patch under the pointer.
-class WandTool : public DragTool {
+class WandTool : public SelectingTool {
   public:
-    using DragTool::DragTool;
+    using SelectingTool::SelectingTool;
 
     ToolCursor cursor() const override { return ToolCursor::Cross; }
 

@@ -19,6 +19,7 @@ struct ToolEvent {
     glm::dvec2 point{0, 0};    // image px; may lie outside the picture
     double pxPerScreenPx = 1;  // image px for each logical pixel of the screen: what is "near" follows it
     ToolModifiers modifiers = {};
+    bool onPhoto = false;  // the photo is what is seen there
 };
 
 enum class ToolKeyCode { Escape, Enter, Left, Right, Up, Down, Other };

@@ -15,14 +15,15 @@ struct ToolOptions {
     glm::dvec3 colour{.85, .45, .15};  // what brush, eyedropper and dragged colours share
     glm::dvec3 secondColour{1, 1, 1};  // the other end of gradients
     WandOptions wand;
+    double gapPx = 32;  // narrower gaps of features do not let a double click through, image px
     ColourSource eyedropper = ColourSource::Vector;
     double brushRadiusPx = 16;  // image px
     double brushHardness = .5;
     double brushStrength = 1;
     bool brushKeepsShading = true;
     double gradientStrength = 1;
-    double featherPx = 0;           // of recolourings of the selection
-    bool allHandles = false;        // the direct-selection tool reaches handles that are not shown by selection
+    double featherPx = 0;     // of recolourings of the selection
+    bool allHandles = false;  // the direct-selection tool reaches handles that are not shown by selection
     bool refitAfterReshape = true;  // colours from the photo, where patches still show it
     bool wholeFeatures = true;      // the blur handle takes the feature up to its next junctions
 };

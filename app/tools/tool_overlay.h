@@ -42,6 +42,12 @@ struct OverlaySwatch {
     glm::dvec3 colour{0};
 };
 
+// Why a patch is passed over.
+struct OverlayLock {
+    PatchId patch;
+    glm::dvec2 at{0, 0};
+};
+
 // All places in image px; colours gamma-encoded sRGB.
 struct ToolOverlay {
     std::optional<Rect> marquee;
@@ -51,6 +57,7 @@ struct ToolOverlay {
     std::vector<EdgeId> curves;  // selected or under the pointer
     std::optional<EdgeId> hoveredCurve;
     std::optional<PatchId> blocking;  // would fold, or is locked: why a drag goes no further
+    std::optional<OverlayLock> lock;  // the locked patch under the pointer
     std::optional<OverlayRing> ring;
     std::optional<OverlayGradient> gradient;
     std::optional<OverlaySwatch> swatch;  // what the eyedropper would pick

@@ -12,8 +12,9 @@ namespace tessera {
 
 using LineSegment = std::pair<glm::dvec2, glm::dvec2>;
 
-// Curves as segments, fine enough to take them for the curves (within a fiftieth of a px or so).
-std::vector<LineSegment> segmentsOf(const PatchMesh& mesh, std::span<const EdgeId> edges);
+// Curves as segments within tolerancePx of them or so.
+std::vector<LineSegment> segmentsOf(const PatchMesh& mesh, std::span<const EdgeId> edges,
+                                    double tolerancePx = .02);
 
 class DistanceGrid {
   public:
@@ -23,6 +24,10 @@ class DistanceGrid {
     double distance(glm::dvec2 point) const;
 
   private:
+    template <class Visit>
+    void forEachCell(const LineSegment& segment, Visit&& visit) const;
+    void findEmptyRings();
+
     std::vector<LineSegment> mSegments;
     double mReach;
     glm::dvec2 mOrigin{0};
@@ -30,6 +35,8 @@ class DistanceGrid {
     double mCell = 1;
     std::vector<uint32_t> mFirst;  // by cell, into mEntries
     std::vector<uint32_t> mEntries;
+    std::vector<uint16_t>
+        mEmptyRings;  // by cell: rings of cells around it, itself included, without a segment
 };
 
 }  // namespace tessera

@@ -46,6 +46,11 @@ PatchSet allSelectable(const PatchMesh& mesh) {
     return all;
 }
 
+PatchSet selectableOf(const PatchMesh& mesh, PatchSet set) {
+    std::erase_if(set, [&](PatchId p) { return !selectable(mesh, p); });
+    return set;
+}
+
 PatchSet inverted(const PatchMesh& mesh, const PatchSet& set) {
     return subtracted(allSelectable(mesh), set);
 }

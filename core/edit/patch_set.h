@@ -21,6 +21,7 @@ PatchSet intersected(const PatchSet& a, const PatchSet& b);
 // Whether tools may select the patch: it is neither hidden nor locked.
 bool selectable(const PatchMesh& mesh, PatchId p);
 PatchSet allSelectable(const PatchMesh& mesh);
+PatchSet selectableOf(const PatchMesh& mesh, PatchSet set);  // of a set of living ones
 // The selectable patches that are not in the set.
 PatchSet inverted(const PatchMesh& mesh, const PatchSet& set);
 // Those of the set that the mesh still has.

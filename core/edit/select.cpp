@@ -3,36 +3,9 @@
 
 #include <algorithm>
 
+#include "core/edit/flood.h"
+
 namespace tessera {
-
-namespace {
-
-// The patches that can be reached from the seed over edges and patches that may be passed.
-template <class MayCross, class MayEnter>
-PatchSet flood(const PatchMesh& mesh, PatchId seed, MayCross&& mayCross, MayEnter&& mayEnter) {
-    const HalfedgeMesh& c = mesh.connectivity();
-    std::vector<uint8_t> seen(c.faceCapacity(), 0);
-    PatchSet reached{seed};
-    seen[seed.index] = 1;
-    for (size_t i = 0; i < reached.size(); ++i)
-        for (const HalfedgeId side : c.sides(reached[i])) {
-            const PatchId beyond = c.face(HalfedgeMesh::twin(side));
-            if (!beyond.valid() || seen[beyond.index] || !mayCross(HalfedgeMesh::edge(side)) ||
-                !mayEnter(beyond))
-                continue;
-            seen[beyond.index] = 1;
-            reached.push_back(beyond);
-        }
-    std::sort(reached.begin(), reached.end());
-    return reached;
-}
-
-PatchSet selectableOf(const PatchMesh& mesh, PatchSet set) {
-    std::erase_if(set, [&](PatchId p) { return !selectable(mesh, p); });
-    return set;
-}
-
-}  // namespace
 
 PatchSet wand(const PatchMesh& mesh, const PatchColours& colours, PatchId seed, const WandOptions& options) {
     const auto like = [&](PatchId p) {
@@ -51,12 +24,6 @@ PatchSet wand(const PatchMesh& mesh, const PatchColours& colours, PatchId seed, 
 
 PatchSet wand(const PatchMesh& mesh, PatchId seed, const WandOptions& options) {
     return wand(mesh, PatchColours(mesh), seed, options);
-}
-
-PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed) {
-    return selectableOf(
-        mesh,
-        flood(mesh, seed, [&](EdgeId e) { return !mesh.curve(e).feature; }, [](PatchId) { return true; }));
 }
 
 PatchSet grown(const PatchMesh& mesh, const PatchSet& set) {

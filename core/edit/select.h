@@ -1,4 +1,4 @@
-// Selections by colour and by what features enclose, and how a selection grows, shrinks and is outlined.
+// Selections by colour, and how a selection grows, shrinks and is outlined.
 #pragma once
 
 #include <vector>
@@ -19,9 +19,6 @@ struct WandOptions {
 // The patches whose mean colour is like the seed's; with the seed where it is selectable.
 PatchSet wand(const PatchMesh& mesh, const PatchColours& colours, PatchId seed, const WandOptions& options);
 PatchSet wand(const PatchMesh& mesh, PatchId seed, const WandOptions& options);
-
-// The patches that can be reached from the seed without crossing a feature.
-PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed);
 
 // The set with the patches that share an edge with it; without those that share an edge with others.
 PatchSet grown(const PatchMesh& mesh, const PatchSet& set);

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "app/edit_actions.h"
+#include "app/element_edits.h"
 #include "app/selection_actions.h"
 #include "app/tools/tool_manager.h"
 #include "core/mesh/mesh_validate.h"
@@ -157,17 +158,17 @@ class RandomSession {
             case 12:
                 return void(below(2) == 0 ? resetColours(s) : resetShape(s));
             case 13:
-                return void(setFeature(s, below(2) == 0));
+                return void(makeNow(s, setFeature(s, below(2) == 0)));
             case 14:
                 return void(setBlur(s, 3 * unit(), 3 * unit()));
             case 15:
                 // Few, so that the mesh does not grow without end.
-                if (s.selection().patches().size() < 3) (void)splitPatches(s);
+                if (s.selection().patches().size() < 3) (void)makeNow(s, splitPatches(s));
                 return;
             case 16:
-                return void(below(2) == 0 ? splitCurves(s) : mergeCurves(s));
+                return void(below(2) == 0 ? makeNow(s, splitCurves(s)) : makeNow(s, mergeCurves(s)));
             default:
-                return void(snapToFeature(s));
+                return void(makeNow(s, snapToFeature(s)));
         }
     }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "app/edit_actions.h"
+#include "app/element_edits.h"
 #include "app/selection_actions.h"
 #include "core/edit/split_merge.h"
 #include "core/mesh/mesh_validate.h"
@@ -165,12 +166,12 @@ TEST_F(SelectionTest, WhatCannotBeSplitStaysAndIsToldOf) {
     while (applyEdit(session, "Split", [&](PatchMesh& m) { return splitPatch(m, tiny, kCentre); }))
         tiny = PatchId(uint32_t(mesh().connectivity().faceCapacity() - 1));
     selection.setPatches({tiny});
-    EXPECT_FALSE(splitPatches(session).has_value()) << "there was nothing else to split";
+    EXPECT_FALSE(makeNow(session, splitPatches(session)).has_value()) << "there was nothing else to split";
 
     const size_t patches = mesh().patchCount();
     const int steps = session.history().count();
     selection.setPatches({PatchId(1), PatchId(12), tiny});
-    const Result<QString> remark = splitPatches(session);
+    const Result<QString> remark = makeNow(session, splitPatches(session));
     ASSERT_TRUE(remark) << remark.error().message;
     EXPECT_TRUE(remark->startsWith("1 of 3 were left")) << remark->toStdString();
     EXPECT_EQ(mesh().patchCount(), patches + 4);
@@ -180,7 +181,7 @@ TEST_F(SelectionTest, WhatCannotBeSplitStaysAndIsToldOf) {
     EXPECT_EQ(mesh().patchCount(), patches);
 
     selection.setPatches({PatchId(1), PatchId(12)});
-    EXPECT_EQ(splitPatches(session).value(), QString());
+    EXPECT_EQ(makeNow(session, splitPatches(session)).value(), QString());
 }
 
 TEST_F(SelectionTest, CurvesThatCannotBeEditedHoldUpNoOthers) {
@@ -189,7 +190,7 @@ TEST_F(SelectionTest, CurvesThatCannotBeEditedHoldUpNoOthers) {
     const auto border = size_t(
         std::count_if(all.begin(), all.end(), [&](EdgeId e) { return mesh().connectivity().onBorder(e); }));
     selection.setShape({}, all);
-    const Result<QString> marked = setFeature(session, true);
+    const Result<QString> marked = makeNow(session, setFeature(session, true));
     ASSERT_TRUE(marked);
     EXPECT_TRUE(marked->startsWith(QString("%1 of %2 ").arg(border).arg(all.size())))
         << marked->toStdString();
@@ -199,13 +200,13 @@ TEST_F(SelectionTest, CurvesThatCannotBeEditedHoldUpNoOthers) {
     ASSERT_TRUE(setFlag(session, PatchFlag::Locked, true));
     selection.setShape({}, all);
     const size_t patches = mesh().patchCount();
-    const Result<QString> split = splitCurves(session);
+    const Result<QString> split = makeNow(session, splitCurves(session));
     ASSERT_TRUE(split);
     EXPECT_TRUE(split->startsWith(QString("3 of %1 ").arg(all.size()))) << split->toStdString();
     EXPECT_GT(mesh().patchCount(), 3 * patches);
     session.history().undo();
 
-    const Result<QString> merged = mergeCurves(session);
+    const Result<QString> merged = makeNow(session, mergeCurves(session));
     ASSERT_TRUE(merged);
     EXPECT_FALSE(merged->isEmpty());
     EXPECT_LT(mesh().patchCount(), patches);

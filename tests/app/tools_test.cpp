@@ -3,6 +3,7 @@
 
 #include <QSignalSpy>
 
+#include "app/edit_actions.h"
 #include "app/selection_actions.h"
 #include "app/tools/blur_tool.h"
 #include "app/tools/colour_at.h"
@@ -108,6 +109,27 @@ TEST_F(ToolsTest, ADoubleClickSelectsWhatFeaturesEnclose) {
     pointer.doubleClick({95, 70});
     EXPECT_EQ(selected().size(), 24u);
     EXPECT_TRUE(contains(selected(), patchAt({25, 25})));
+}
+
+TEST_F(ToolsTest, ALockedPatchIsPassedOverAndSaysSo) {
+    const PatchId locked = patchAt({25, 25});
+    session->selection().setPatches({locked});
+    ASSERT_TRUE(setFlag(*session, PatchFlag::Locked, true));
+    QString said;
+    QObject::connect(&tools, &ToolManager::said, [&](const QString& text) { said = text; });
+    for (const ToolId id : {ToolId::Select, ToolId::Wand}) {
+        tools.setTool(id);
+        pointer.move({25, 25});
+        ASSERT_TRUE(tools.overlay().lock.has_value());
+        EXPECT_EQ(tools.overlay().lock->patch, locked);
+        pointer.press({25, 25});
+        pointer.release({25, 25});
+        EXPECT_TRUE(said.startsWith("This patch is locked")) << said.toStdString();
+        EXPECT_TRUE(selected().empty());
+        said.clear();
+        pointer.move({95, 70});
+        EXPECT_FALSE(tools.overlay().lock.has_value());
+    }
 }
 
 TEST_F(ToolsTest, TheLassoIsAPolygon) {
@@ -284,6 +306,14 @@ TEST_F(ToolsTest, TheEyedropperPicksFromTheOriginalToo) {
     tools.setTool(ToolId::Eyedropper);
     pointer.modifiers.alt = true;
     pointer.click({25, 25});
+    EXPECT_NEAR(glm::distance(tools.options().colour, {.5, .25, .25}), 0, 1e-6);
+    pointer.modifiers = {};
+    pointer.click({25, 25});
+    EXPECT_NEAR(glm::distance(tools.options().colour, {.8, .3, .2}), 0, 1e-6);
+    // What is seen is what is picked: O is held.
+    const ToolEvent onPhoto{.point = {25, 25}, .onPhoto = true};
+    tools.press(onPhoto);
+    tools.release(onPhoto);
     EXPECT_NEAR(glm::distance(tools.options().colour, {.5, .25, .25}), 0, 1e-6);
 }
 

@@ -7,6 +7,7 @@
 #include <QTest>
 
 #include "app/edit_session.h"
+#include "app/element_edits.h"
 #include "app/selection_picture.h"
 #include "core/document/codec.h"
 #include "core/image/image_io.h"
@@ -246,6 +247,66 @@ TEST_F(WorkspaceTest, TheSelectionIsCopiedAsAPicture) {
     EXPECT_EQ(picture.pixelColor(8, 1).alpha(), 0);
     EXPECT_GT(picture.pixelColor(5, 5).alpha(), 0);
     EXPECT_LT(picture.pixelColor(5, 5).alpha(), 255) << "on the curve, in part";
+}
+
+class ManyElements : public WorkspaceTest {
+  protected:
+    void SetUp() override {
+        WorkspaceTest::SetUp();
+        Document document;
+        document.mesh = testing::gridMesh(240, 160, 24, 16);
+        ASSERT_TRUE(saveDocument(document, at("many.tessera")).has_value());
+        open(path("many.tessera"));
+        session = workspace.session();
+        start = testing::bytesOf(session->document());
+        session->selection().setPatches(allSelectable(session->document().mesh));
+    }
+
+    DocumentSession* session = nullptr;
+    std::vector<uint8_t> start;
+};
+
+TEST_F(ManyElements, AreEditedByAJobAsOneStep) {
+    const size_t patches = session->document().mesh.patchCount();
+    workspace.edit(splitPatches(*session));
+    ASSERT_NE(workspace.running(JobKind::Edit), nullptr);
+    EXPECT_TRUE(session->editing()) << "nothing else may change the document meanwhile";
+    EXPECT_EQ(session->document().mesh.patchCount(), patches);
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(session->editing());
+    EXPECT_EQ(session->document().mesh.patchCount(), 3 * patches);
+    EXPECT_EQ(session->selection().patches().size(), 3 * patches) << "the parts are selected";
+    EXPECT_EQ(session->history().undoText(), "Split Patch");
+    session->history().undo();
+    EXPECT_EQ(testing::bytesOf(session->document()), start);
+}
+
+TEST_F(ManyElements, StayAsTheyWereWhereTheJobIsStopped) {
+    workspace.edit(splitPatches(*session));
+    workspace.cancel();
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(session->editing());
+    EXPECT_EQ(session->history().count(), 0);
+    EXPECT_EQ(testing::bytesOf(session->document()), start);
+    EXPECT_EQ(said.text, QString()) << "who stops it knows";
+}
+
+TEST_F(ManyElements, DoNotKeepADocumentFromBeingClosed) {
+    workspace.edit(splitPatches(*session));
+    workspace.close(session, answering({.kind = CloseAnswer::Kind::Discard}));
+    EXPECT_EQ(workspace.session(), nullptr);
+    EXPECT_EQ(asked, 0) << "nothing has been changed";
+    EXPECT_TRUE(idle());
+}
+
+TEST_F(ManyElements, AFewAreEditedAtOnceAndFailuresAreSaid) {
+    session->selection().setPatches({PatchId(2)});
+    workspace.edit(splitPatches(*session));
+    EXPECT_EQ(workspace.currentJob(), nullptr);
+    EXPECT_EQ(session->history().count(), 1);
+    session->selection().clear();
+    workspace.edit(splitPatches(*session));
+    EXPECT_EQ(said.text, "Select patches first.");
 }
 
 }  // namespace

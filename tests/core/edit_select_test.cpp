@@ -11,6 +11,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/edit/enclosed_region.h"
 #include "core/edit/palette.h"
 #include "tests/support/edit_meshes.h"
 #include "tests/support/test_meshes.h"
@@ -87,8 +88,8 @@ TEST(Wand, StopsAtFeaturesWhereItShould) {
     for (uint32_t i = 0; i < 6; ++i) makeFeature(mesh, edgeBetween(mesh, 2 * i + 1, 2 * (i + 6)));
     EXPECT_EQ(wand(mesh, PatchId(0), {.06, true, true}).size(), 6U);
     EXPECT_EQ(wand(mesh, PatchId(0), {.06, true, false}).size(), 24U);
-    EXPECT_EQ(enclosedByFeatures(mesh, PatchId(0)).size(), 12U);
-    EXPECT_EQ(enclosedByFeatures(mesh, PatchId(47)).size(), 36U);
+    EXPECT_EQ(enclosedByFeatures(mesh, PatchId(0), 0).size(), 12U);
+    EXPECT_EQ(enclosedByFeatures(mesh, PatchId(47), 0).size(), 36U);
 }
 
 TEST(PatchColours, FollowWhatChanges) {

@@ -9,8 +9,10 @@
 #include <QSlider>
 #include <QSpinBox>
 
+#include "app/recovery_store.h"
 #include "core/export/rasterize.h"
 #include "core/vectorize/quality.h"
+#include "tests/support/test_meshes.h"
 #include "tests/ui/main_window_fixture.h"
 #include "ui/opening_card.h"
 #include "ui/panels/gesture_slider.h"
@@ -552,6 +554,31 @@ TEST_F(MainWindowTest, VectorizesAPhotograph) {
     EXPECT_GT(session()->document().mesh.patchCount(), 10);
     ASSERT_TRUE(session()->document().difference.has_value());
     EXPECT_LT(session()->document().difference->mae, 20);
+}
+
+TEST_F(MainWindowTest, AFileOpensAtOnceThoughThereIsSomethingToRecover) {
+    {
+        RecoveryStore crashed;
+        Document document;
+        document.mesh = testing::gridMesh(40, 30, 4, 3);
+        ASSERT_TRUE(crashed.newSlot()->write(document, {"", photo, QDateTime::currentDateTimeUtc()}));
+    }
+    window->open(photo);
+    window->mentionRecovery();
+    EXPECT_EQ(window->messages().text(), "") << "not before the file is there";
+    ASSERT_TRUE(idle());
+    ASSERT_NE(session(), nullptr);
+    EXPECT_TRUE(window->messages().text().contains("autosaved")) << window->messages().text().toStdString();
+    QTimer::singleShot(300, window.get(), [] {
+        auto* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
+        ASSERT_NE(dialog, nullptr);
+        QTest::mouseClick(dialog->findChild<QPushButton*>("recover"), Qt::LeftButton);
+    });
+    const auto buttons = window->messages().findChildren<QPushButton*>();
+    ASSERT_EQ(buttons.size(), 1);
+    QTest::mouseClick(buttons[0], Qt::LeftButton);
+    ASSERT_TRUE(QTest::qWaitFor([&] { return workspace().sessions().size() == 2; }, kWaitMs));
+    EXPECT_TRUE(session()->hasMesh());
 }
 
 }  // namespace

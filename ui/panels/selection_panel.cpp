@@ -10,6 +10,7 @@
 #include <QSignalBlocker>
 #include <QTimer>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "app/selection_actions.h"
 #include "app/tools/tool_manager.h"
@@ -35,6 +36,12 @@ StoredList::StoredList(QWidget* parent) : QListWidget(parent) {
     setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
     setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     setToolTip(tr("Click to select; Shift adds, Alt subtracts. F2 renames, Delete removes"));
+}
+
+QSize StoredList::sizeHint() const {
+    constexpr int kMostRows = 6;
+    const int row = count() > 0 ? sizeHintForRow(0) : fontMetrics().height();
+    return {QListWidget::sizeHint().width(), std::clamp(count(), 1, kMostRows) * row + 2 * frameWidth()};
 }
 
 bool StoredList::event(QEvent* event) {
@@ -207,6 +214,7 @@ void SelectionPanel::fillStored() {
             item->setToolTip(tr("Patches: %1").arg(stored.patches.size()));
             if (name == current) mStored->setCurrentItem(item);
         }
+    mStored->updateGeometry();
     mStored->setVisible(mStored->count() > 0);
     mStoredHint->setVisible(mStored->count() == 0);
 }

@@ -24,6 +24,10 @@ class StoredList : public QListWidget {
   public:
     explicit StoredList(QWidget* parent = nullptr);
 
+    // As high as its names, within reason, so that none is out of sight below an empty half.
+    QSize sizeHint() const override;
+    QSize minimumSizeHint() const override { return sizeHint(); }
+
   signals:
     void recalled(const QString& name, tessera::SelectMode mode);
     void removed(const QString& name);
