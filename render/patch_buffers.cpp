@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/round_up.h"
 
 namespace tessera::render {
 
@@ -59,7 +60,7 @@ TermHeap::Run TermHeap::fit(Run run, uint32_t count) {
     if (count <= run.room) return run;
     // A few more than asked for, since refits change the number by a few.
     constexpr uint32_t kStep = 4;
-    const uint32_t room = (count + kStep - 1) / kStep * kStep;
+    const uint32_t room = roundUp(count, kStep);
     if (run.room > 0) mFree[run.room].push_back(run.first);
     std::vector<uint32_t>& same = mFree[room];
     if (!same.empty()) {

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "core/base/check.h"
+#include "core/base/round_up.h"
 #include "core/base/vectors.h"
 
 namespace tessera {
@@ -102,7 +103,7 @@ std::vector<double> lowerProducts(std::span<const double> left, std::span<const 
     TESSERA_CHECK(left.size() == rows * length && right.size() == rows * length);
     constexpr size_t kWide = kTileColumns<double>;
     // Panels of as many columns of the product as a tile has, and rows up to a multiple of the tile's.
-    const size_t stride = (rows + kTileRows - 1) / kTileRows * kTileRows;
+    const size_t stride = roundUp(rows, kTileRows);
     std::vector<double> products(rows * rows, 0), panel(kWide * length, 0), last;
     std::array<double, kTileRows * kWide> tile{};
     if (stride > rows) {

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/base/round_up.h"
+
 namespace tessera {
 
 // sums[i] += factors[j] * rows[j * stride + i] for all i < sums.size(), with j from 0 on.
@@ -32,7 +34,7 @@ std::vector<double> lowerProducts(std::span<const double> left, std::span<const 
 // symmetric matrix. There are `count` rows; stride is gramStride(columns).
 constexpr size_t gramStride(size_t columns) {
     constexpr size_t kStep = 16;
-    return (columns + kStep - 1) / kStep * kStep;
+    return roundUp(columns, kStep);
 }
 std::vector<float> gram(std::span<const float> rows, size_t count, size_t columns);
 

@@ -5,6 +5,8 @@
 
 #if defined(__linux__)
 #include <sys/mman.h>
+
+#include "core/base/round_up.h"
 #endif
 
 namespace tessera {
@@ -14,7 +16,7 @@ void* allocateLarge(size_t bytes) {
     void* memory = nullptr;
 #if defined(__linux__)
     if (bytes >= kMuch) {
-        const size_t whole = (bytes + kPage - 1) / kPage * kPage;
+        const size_t whole = roundUp(bytes, kPage);
         memory = std::aligned_alloc(kPage, whole);
         if (!memory) throw std::bad_alloc();
         (void)madvise(memory, whole, MADV_HUGEPAGE);  // a wish, which may well be refused

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 
+#include "core/base/round_up.h"
 #include "core/base/row_products.h"
 #include "core/base/vectors.h"
 #include "core/mesh/newton_basis.h"
@@ -213,7 +214,7 @@ void solve(const Equations& e, const std::array<size_t, kMaxChannels>& lengths,
            std::array<std::array<double, kMostFunctions>, kMaxChannels>& x) {
     for (int c = 0; c < e.channels; ++c) {
         double* const to = x[size_t(c)].data();
-        const size_t length = lengths[size_t(c)], end = (length + kLanes - 1) / kLanes * kLanes;
+        const size_t length = lengths[size_t(c)], end = roundUp(length, kLanes);
         std::fill_n(to, end, 0.0);
         for (size_t k = length; k-- > 0;) {
             Quad sum{};

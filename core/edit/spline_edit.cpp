@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/base/check.h"
+#include "core/base/round_up.h"
 #include "core/base/vectors.h"
 
 namespace tessera {
@@ -44,7 +45,7 @@ Mix mixOf(int channels, ColourBasis basis, const AffineColour& change) {
 
 // Coefficients of channels side by side, filled up with zeros.
 constexpr size_t kLanes = 4;
-constexpr size_t kMostCoefficients = (size_t(kPolynomials) + 255 + kLanes - 1) / kLanes * kLanes;
+constexpr size_t kMostCoefficients = roundUp(size_t(kPolynomials) + 255, kLanes);
 using CoefficientPlanes = std::array<std::array<float, kMostCoefficients>, kMaxChannels>;
 
 // The first `length` coefficients, a multiple of kLanes, of a channel that is made of `channels` others.
@@ -78,7 +79,7 @@ PatchSpline mixed(const PatchSpline& spline, int channels, ColourBasis basis, co
     const auto count = size_t(channels);
     TESSERA_CHECK(count <= kMaxChannels);
     const Mix mix = mixOf(channels, basis, change);
-    const auto whole = [](size_t length) { return (length + kLanes - 1) / kLanes * kLanes; };
+    const auto whole = [](size_t length) { return roundUp(length, kLanes); };
     PatchSpline result;
     result.sites = spline.sites;
     result.centres = spline.centres;

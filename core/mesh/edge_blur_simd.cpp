@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/check.h"
+#include "core/base/round_up.h"
 #include "core/base/vectors.h"
 #include "core/mesh/edge_blur.h"
 
@@ -191,7 +192,7 @@ TESSERA_VECTOR_CLONES void findFeet(const LaneFeature& f, const float* x, const 
 
 // How many points whole vectors have.
 constexpr size_t padded(size_t count) {
-    return (count + kVector - 1) / kVector * kVector;
+    return roundUp(count, kVector);
 }
 
 struct PointBox {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/round_up.h"
 #include "core/base/row_products.h"
 
 namespace tessera {
@@ -22,9 +23,6 @@ constexpr std::array<std::array<double, kPolynomials>, kCorners> kBarycentric{
 
 // Of products: points whose terms the nearest cache holds, and a tile.
 constexpr size_t kBlock = 64, kPointsAtOnce = 8, kFunctionsAtOnce = 4;
-size_t roundUp(size_t points) {
-    return (points + kPointsAtOnce - 1) / kPointsAtOnce * kPointsAtOnce;
-}
 
 // phi of the distance between two sites.
 double siteKernel(uint8_t a, uint8_t b) {
@@ -44,7 +42,7 @@ double siteKernel(uint8_t a, uint8_t b) {
 
 NewtonBasis::NewtonBasis(std::span<const uint8_t> sites)
     : mSites(sites.begin(), sites.end()),
-      mStride((sites.size() + kFunctionsAtOnce - 1) / kFunctionsAtOnce * kFunctionsAtOnce),
+      mStride(roundUp(sites.size(), kFunctionsAtOnce)),
       mCoefficients((sites.size() + kPolynomials) * mStride, 0),
       mEnergies(sites.size(), 0) {
     const int n = size();
@@ -136,7 +134,7 @@ void NewtonBasis::evaluate(const float* x, const float* y, size_t count, float* 
             terms[2 * kBlock + i] = double(y[first + i]);
         }
         evaluateKernels(mCentres, x + first, y + first, points, &terms[kPolynomials * kBlock], kBlock);
-        combine(terms.data(), kBlock, roundUp(points), [&](size_t k, const double* values) {
+        combine(terms.data(), kBlock, roundUp(points, kPointsAtOnce), [&](size_t k, const double* values) {
             for (size_t i = 0; i < points; ++i) out[k * stride + first + i] = float(values[i]);
         });
     }
@@ -167,7 +165,7 @@ void NewtonBasis::evaluateWithDerivatives(const float* x, const float* y, size_t
     for (const auto& [terms, out] : {std::pair(&f, values), std::pair(&fx, alongX), std::pair(&fy, alongY)})
         for (size_t first = 0; first < count; first += kBlock) {
             const size_t points = std::min(kBlock, count - first);
-            combine(terms->data() + first, stride, roundUp(points),
+            combine(terms->data() + first, stride, roundUp(points, kPointsAtOnce),
                     [&, out = out](size_t k, const double* from) {
                         std::copy_n(from, points, out + k * stride + first);
                     });

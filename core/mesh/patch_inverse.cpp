@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/check.h"
+#include "core/base/round_up.h"
 #include "core/mesh/patch_query.h"
 
 namespace tessera {
@@ -185,7 +186,7 @@ void PatchInverse::chooseSteps() {
 
 void PatchInverse::solve(float* x, float* y, size_t count, float* v, float* w) const {
     TESSERA_CHECK(count <= kMaxBatch);
-    const size_t padded = (count + kVector - 1) / kVector * kVector;
+    const size_t padded = roundUp(count, kVector);
     std::fill(x + count, x + padded, 0.0f);
     std::fill(y + count, y + padded, 0.0f);
     int32_t bad[kMaxBatch];

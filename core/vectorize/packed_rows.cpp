@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/round_up.h"
 #include "core/base/vector_clones.h"
 
 namespace tessera {
@@ -14,7 +15,7 @@ namespace {
 constexpr size_t kLanes = 8;
 
 size_t padded(size_t columns) {
-    return (columns + kLanes - 1) / kLanes * kLanes;
+    return roundUp(columns, kLanes);
 }
 
 int16_t nearest(float x) {

@@ -7,6 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/round_up.h"
 #include "core/base/vector_clones.h"
 #include "core/mesh/tps.h"
 
@@ -176,7 +177,7 @@ ParameterFit::Places::Places(int perSide) {
             if (i + j + 1 < perSide) at.push_back(glm::dvec2(i + 2 / 3.0, j + 2 / 3.0) / double(perSide));
         }
     const size_t count = at.size();
-    padded = (count + kLanes - 1) / kLanes * kLanes;
+    padded = roundUp(count, kLanes);
     const auto bernstein = [&](const auto& exponents, int degree, std::vector<float>& rows) {
         rows.assign(exponents.size() * padded, 0);
         for (size_t i = 0; i < exponents.size(); ++i) {

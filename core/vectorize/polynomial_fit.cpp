@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/base/check.h"
+#include "core/base/round_up.h"
 #include "core/base/vector_clones.h"
 #include "core/mesh/tps.h"
 
@@ -70,8 +71,8 @@ struct Frame {
 // Sums over the pixels; what the lanes hold is added up at the end.
 template <int kChannels>
 struct Sums {
-    Quad gram[(kGramTerms + kQuad - 1) / kQuad * kQuad];  // of the terms' values over j!
-    Quad moments[kChannels][kTerms];                      // of the terms' values times the channel's
+    Quad gram[roundUp(kGramTerms, kQuad)];  // of the terms' values over j!
+    Quad moments[kChannels][kTerms];        // of the terms' values times the channel's
     Quad energy;
 };
 
@@ -405,7 +406,7 @@ PolynomialFit::PolynomialFit(const Image& picture)
     : mWidth(picture.width()),
       mHeight(picture.height()),
       mChannels(picture.channels()),
-      mPixels(size_t(mWidth + kLanes - 1) / kLanes * kLanes * size_t(mHeight) * size_t(mChannels)) {
+      mPixels(size_t(roundUp(mWidth, kLanes)) * size_t(mHeight) * size_t(mChannels)) {
     TESSERA_CHECK(mChannels == 3 || mChannels == 4);
     for (int c = 0; c < mChannels; ++c)
         for (int y = 0; y < mHeight; ++y)
