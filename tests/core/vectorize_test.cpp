@@ -230,6 +230,9 @@ double cpuMilliseconds(clockid_t clock) {
 // processor time of that thread, so that what else the machine does plays no part; asked for at shares of the
 // time that the whole takes, most of them where the stages before the long simplification are.
 TEST_P(Vectorize, StopsInTime) {
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+    GTEST_SKIP() << "a sanitizer takes many times the time";
+#endif
     const Image image = scene(560, 400);
     VectorizeSettings settings = wanted(1500);
     settings.threads = 1;
