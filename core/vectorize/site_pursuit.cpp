@@ -107,15 +107,16 @@ class Pursuit {
     int mChannels;
 };
 
-// A patch with more cells than this for each site looks at half of them.
+// A patch with more cells than this for each site looks at one of three.
 constexpr size_t kManyPerSite = 4;
+constexpr uint32_t kOneOf = 3;
 
-// Keeps the cells of one colour of a chequerboard; each has one sample. `columns` of cells a row.
-void keepEveryOther(PatchCells& cells, int columns) {
+// Keeps the cells of every third diagonal; each has one sample. `columns` of cells a row.
+void keepDiagonals(PatchCells& cells, int columns) {
     size_t kept = 0;
     for (size_t i = 0; i < cells.cells.size(); ++i) {
         const uint32_t number = cells.cells[i].number;
-        if ((number % uint32_t(columns) + number / uint32_t(columns)) % 2 != 0) continue;
+        if ((number % uint32_t(columns) + number / uint32_t(columns)) % kOneOf != 0) continue;
         cells.cells[kept] = cells.cells[i];
         cells.x[kept] = cells.x[i];
         cells.y[kept] = cells.y[i];
@@ -214,11 +215,11 @@ std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture,
             const uint32_t p = sampler.patches()[i].index;
             const int most = std::clamp(int(cells.cells.size()), kCorners, int(sites.size()));
             const bool thinned = cells.cells.size() > kManyPerSite * sites.size();
-            if (thinned) keepEveryOther(cells, picture.width());
+            if (thinned) keepDiagonals(cells, picture.width());
             ErrorCurves errors;
             Pursuit(cells, picture, sites, most).run(most, choices[p].sites, errors);
             for (size_t c = 0; c < errors.size(); ++c) {
-                for (float& error : errors[c]) error *= thinned ? 2 : 1;
+                for (float& error : errors[c]) error *= thinned ? kOneOf : 1;
                 offers[p][c] = offersOf(errors[c]);
             }
         }
