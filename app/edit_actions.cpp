@@ -11,14 +11,6 @@ namespace tessera {
 
 namespace {
 
-tl::unexpected<Error> refused(const QString& why) {
-    return failure(ErrorCode::Usage, why.toStdString());
-}
-
-tl::unexpected<Error> noPatches() {
-    return refused(QObject::tr("Select patches first."));
-}
-
 Result<void> apply(DocumentSession& session, const QString& text, const MeshEdit& edit) {
     const Result<Touched> touched = applyEdit(session, text, edit);
     if (!touched) return tl::unexpected<Error>(touched.error());
@@ -27,13 +19,9 @@ Result<void> apply(DocumentSession& session, const QString& text, const MeshEdit
 
 Result<void> editPatches(DocumentSession& session, const QString& text,
                          const std::function<Result<Touched>(PatchMesh&, const PatchSet&)>& edit) {
-    const PatchSet patches = session.selection().patches();
-    if (patches.empty()) return noPatches();
-    return apply(session, text, [&](PatchMesh& mesh) { return edit(mesh, patches); });
-}
-
-tl::unexpected<Error> noCurves() {
-    return refused(QObject::tr("Select curves with the direct-selection tool first."));
+    const auto patches = selectedPatches(session);
+    if (!patches) return tl::unexpected<Error>(patches.error());
+    return apply(session, text, [&](PatchMesh& mesh) { return edit(mesh, *patches); });
 }
 
 bool& valueOf(PatchAttributes& attributes, PatchFlag flag) {
@@ -123,10 +111,10 @@ Result<void> resetShape(DocumentSession& session) {
 }
 
 Result<void> setBlur(DocumentSession& session, double sigmaStart, double sigmaEnd) {
-    const std::vector<EdgeId> curves = session.selection().curves();
-    if (curves.empty()) return noCurves();
+    const auto curves = selectedCurves(session);
+    if (!curves) return tl::unexpected<Error>(curves.error());
     return apply(session, QObject::tr("Blur"),
-                 [&](PatchMesh& mesh) { return setBlur(mesh, curves, sigmaStart, sigmaEnd); });
+                 [&](PatchMesh& mesh) { return setBlur(mesh, *curves, sigmaStart, sigmaEnd); });
 }
 
 }  // namespace tessera

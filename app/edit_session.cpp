@@ -85,6 +85,21 @@ Result<Touched> applyEdit(DocumentSession& session, const QString& text, const M
     return touched;
 }
 
+tl::unexpected<Error> refused(const QString& why) {
+    return failure(ErrorCode::Usage, why.toStdString());
+}
+
+Result<PatchSet> selectedPatches(const DocumentSession& session) {
+    if (session.selection().patches().empty()) return refused(QObject::tr("Select patches first."));
+    return session.selection().patches();
+}
+
+Result<std::vector<EdgeId>> selectedCurves(const DocumentSession& session) {
+    if (session.selection().curves().empty())
+        return refused(QObject::tr("Select curves with the direct-selection tool first."));
+    return session.selection().curves();
+}
+
 bool applyToDocument(DocumentSession& session, const QString& text, const Change& change,
                      const std::function<void(Document&)>& edit) {
     if (session.editing()) return false;

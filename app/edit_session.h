@@ -52,6 +52,13 @@ class EditSession {
 // open. Returns what was touched.
 Result<Touched> applyEdit(DocumentSession& session, const QString& text, const MeshEdit& edit);
 
+// An edit that is not made, for a reason in the user's words (Usage).
+tl::unexpected<Error> refused(const QString& why);
+
+// What edits of the selection are about; a refusal where there is none.
+Result<PatchSet> selectedPatches(const DocumentSession& session);
+Result<std::vector<EdgeId>> selectedCurves(const DocumentSession& session);
+
 // A step that changes other parts of the document than its mesh; `change` says which. False, and nothing
 // done, while an EditSession is open.
 bool applyToDocument(DocumentSession& session, const QString& text, const Change& change,

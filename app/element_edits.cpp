@@ -16,21 +16,6 @@ namespace tessera {
 
 namespace {
 
-tl::unexpected<Error> refused(const QString& why) {
-    return failure(ErrorCode::Usage, why.toStdString());
-}
-
-Result<PatchSet> patchesOf(const DocumentSession& session) {
-    if (session.selection().patches().empty()) return refused(QObject::tr("Select patches first."));
-    return session.selection().patches();
-}
-
-Result<std::vector<EdgeId>> curvesOf(const DocumentSession& session) {
-    if (session.selection().curves().empty())
-        return refused(QObject::tr("Select curves with the direct-selection tool first."));
-    return session.selection().curves();
-}
-
 Result<std::shared_ptr<const Image>> photoOf(const DocumentSession& session) {
     if (!session.photo().image)
         return refused(QObject::tr("The photo of this document is missing; relink it first."));
@@ -136,7 +121,7 @@ std::vector<std::vector<EdgeId>> connectedParts(const HalfedgeMesh& mesh, const 
 }  // namespace
 
 Result<ElementEdit> splitPatches(const DocumentSession& session) {
-    return patchesOf(session).map([](PatchSet patches) {
+    return selectedPatches(session).map([](PatchSet patches) {
         constexpr Barycentric kCentre(1. / 3, 1. / 3, 1. / 3);
         return forEach(QObject::tr("Split Patch"), std::move(patches),
                        [=](PatchMesh& mesh, PatchId p) { return splitPatch(mesh, p, kCentre); });
@@ -144,14 +129,14 @@ Result<ElementEdit> splitPatches(const DocumentSession& session) {
 }
 
 Result<ElementEdit> splitCurves(const DocumentSession& session) {
-    return curvesOf(session).map([](std::vector<EdgeId> curves) {
+    return selectedCurves(session).map([](std::vector<EdgeId> curves) {
         return forEach(QObject::tr("Split Curve"), std::move(curves),
                        [](PatchMesh& mesh, EdgeId e) { return splitEdge(mesh, e, .5); });
     });
 }
 
 Result<ElementEdit> mergeCurves(const DocumentSession& session) {
-    return curvesOf(session).map([](std::vector<EdgeId> curves) {
+    return selectedCurves(session).map([](std::vector<EdgeId> curves) {
         return forEach(QObject::tr("Merge"), std::move(curves),
                        [](PatchMesh& mesh, EdgeId e) -> Result<Touched> {
                            // One that went with the merge of another needs none of its own.
@@ -162,7 +147,7 @@ Result<ElementEdit> mergeCurves(const DocumentSession& session) {
 }
 
 Result<ElementEdit> setFeature(const DocumentSession& session, bool feature) {
-    return curvesOf(session).map([feature](std::vector<EdgeId> curves) {
+    return selectedCurves(session).map([feature](std::vector<EdgeId> curves) {
         const size_t count = curves.size();
         const auto run = [curves = std::move(curves), feature](PatchMesh& mesh, Progress& progress) {
             Tally tally(curves.size(), progress);
@@ -181,7 +166,7 @@ Result<ElementEdit> setFeature(const DocumentSession& session, bool feature) {
 Result<ElementEdit> snapToFeature(const DocumentSession& session) {
     const auto photo = photoOf(session);
     if (!photo) return tl::unexpected<Error>(photo.error());
-    return curvesOf(session).map([photo = *photo](std::vector<EdgeId> curves) {
+    return selectedCurves(session).map([photo = *photo](std::vector<EdgeId> curves) {
         const size_t count = curves.size();
         const auto run = [curves = std::move(curves), photo](PatchMesh& mesh, Progress& progress) {
             progress.beginStage("", 1);
@@ -210,7 +195,7 @@ Result<ElementEdit> snapToFeature(const DocumentSession& session) {
 Result<ElementEdit> refitColours(const DocumentSession& session) {
     const auto photo = photoOf(session);
     if (!photo) return tl::unexpected<Error>(photo.error());
-    return patchesOf(session).map([photo = *photo](PatchSet patches) {
+    return selectedPatches(session).map([photo = *photo](PatchSet patches) {
         const size_t count = patches.size();
         const auto run = [patches = std::move(patches), photo](PatchMesh& mesh, Progress& progress) {
             return Tally(patches.size(), progress).edited(refitColours(mesh, *photo, patches));
