@@ -56,8 +56,8 @@ Result<ImageDifference> differenceOf(const PatchMesh& mesh, const Image& picture
     return difference;
 }
 
-// "bytes", the error of what a reader of the file gets, whose drop is the codec's loss, and what a JPEG with
-// that error takes.
+// "bytes", and of what a reader of the file gets: the seams, the error, whose drop is the codec's loss, and
+// what a JPEG with that error takes.
 Result<void> addCodec(Json& row, const VectorImage& vectorized, const VectorizeSettings& settings,
                       const Image& picture, const ImageDifference& errors) {
     Document document;
@@ -72,6 +72,9 @@ Result<void> addCodec(Json& row, const VectorImage& vectorized, const VectorizeS
     const auto difference = differenceOf(decoded->mesh, picture);
     if (!difference) return tl::unexpected(difference.error());
     row["bytes"] = bytes->size();
+    const SeamStatistics seams = measureSeams(decoded->mesh);
+    row["seam_mean"] = seams.mean;
+    row["seam_p95"] = seams.p95;
     row["psnr_decoded"] = difference->psnr;
     row["codec_loss_db"] = errors.psnr - difference->psnr;
     const auto jpeg = referenceJpegBytes(picture, difference->psnr);
@@ -112,9 +115,6 @@ Result<Json> measureRun(const std::string& path, const VectorizeSettings& settin
     const auto difference = differenceOf(mesh, *picture, &rendering);
     if (!difference) return tl::unexpected(difference.error());
     row.update(toJson(*difference));
-    const SeamStatistics seams = measureSeams(mesh);
-    row["seam_mean"] = seams.mean;
-    row["seam_p95"] = seams.p95;
     addShape(row, mesh);
     row["folds"] = validate(mesh).violationCount;
     row.update(measureFeatures(*picture, rendering, mesh));

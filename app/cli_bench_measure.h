@@ -17,7 +17,8 @@ Result<Image> readPicture(const std::string& path);
 
 // Vectorizes the picture and measures the result: one flat object of named figures, and "stages", the report.
 // "seconds" and "cpu_seconds" are those of the vectorization; "peak_rss_mb" is the process's up to its end,
-// with the picture. Errors are of the rendering at the picture's size with 4 samples a pixel.
+// with the picture. Errors are of the rendering at the picture's size with 4 samples a pixel; seams are of
+// the document as stored.
 Result<Json> measureRun(const std::string& path, const VectorizeSettings& settings);
 
 }  // namespace tessera::cli

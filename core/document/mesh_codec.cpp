@@ -19,7 +19,10 @@ namespace {
 constexpr uint32_t kMaxFaces = 1u << 26;
 constexpr size_t kGrain = 64;
 // What storing may take from the PSNR of a document that knows its own, and what is assumed of others.
-constexpr double kPsnrLoss = .09, kAssumedPsnr = 45, kLeastPsnr = 20, kLargestPsnr = 60;
+constexpr double kPsnrLoss = .09, kAssumedPsnr = 45, kLargestPsnr = 60;
+// What rounding moves the fitted channels by at most, root mean square, however large the picture's error is:
+// seams show it twice, and bear no more where pictures are hard. Measured.
+constexpr double kLargestRounding = .7 / 255;
 
 tl::unexpected<Error> broken(const std::string& what) {
     return failure(ErrorCode::Internal, "the mesh cannot be stored: it " + what + "; please report this");
@@ -244,15 +247,15 @@ double chooseColourStep(const PatchMesh& mesh, std::optional<double> psnr) {
     if (!usesSites(mesh)) return defaultColourStep();
     // kPsnrLoss dB are this share of the error that the picture has already.
     const double share = std::pow(10, kPsnrLoss / 10) - 1;
-    // fmin and fmax, since a PSNR may be anything that a file had.
-    const double known = std::fmax(std::fmin(psnr.value_or(kAssumedPsnr), kLargestPsnr), kLeastPsnr);
-    const double error = std::pow(10, -known / 10);
+    // fmin, since a PSNR may be anything that a file had.
+    const double known = std::fmin(psnr.value_or(kAssumedPsnr), kLargestPsnr);
+    const double added = std::min(share * std::pow(10, -known / 10), kLargestRounding * kLargestRounding);
     double factors = 0;
     mesh.forEachPatch([&](PatchId p) {
         for (int c = 0; c < mesh.channels(); ++c)
             factors += std::max<int>(3, mesh.spline(p).terms[size_t(c)]);
     });
-    return factorStep(share * error * mesh.channels(), factors / double(mesh.patchCount()));
+    return factorStep(added * mesh.channels(), factors / double(mesh.patchCount()));
 }
 
 Result<MeshChunks> encodeMesh(const PatchMesh& mesh, double colourStep) {

@@ -50,7 +50,7 @@ struct VectorizeSettings {
     int seamPasses = 3;          // solutions from which the weight of seams is found; the first takes 1
     // Along edges that are no features the colours of both sides differ by so many levels (of 255) on the
     // mean, and by so many at the 95th percentile, at most.
-    double seamMeanLevels = 2.8;
+    double seamMeanLevels = 2.6;
     double seamHighLevels = 8.7;
     double seamGradientWeight = .005;  // of a squared difference a pixel off, against that on the edge
 

@@ -7,6 +7,7 @@
 #include "core/document/codec.h"
 #include "core/document/factor_codec.h"
 #include "core/export/rasterize.h"
+#include "core/mesh/mesh_validate.h"
 #include "core/vectorize/solve_colors.h"
 #include "tests/support/painted_image.h"
 #include "tests/support/random_documents.h"
@@ -22,16 +23,24 @@ Image texture(int width, int height) {
     });
 }
 
-double psnrOf(const PatchMesh& mesh, const Image& image) {
-    const auto drawn = rasterize(mesh, wholePicture(mesh, glm::dvec2(1)));
-    EXPECT_TRUE(drawn);
+double meanSquare(const Image& a, const Image& b) {
     double sum = 0;
     for (int c = 0; c < 3; ++c)
-        for (size_t i = 0; i < image.planeSize(); ++i) {
-            const double d = double(drawn->plane(c)[i]) - double(image.plane(c)[i]);
+        for (size_t i = 0; i < a.planeSize(); ++i) {
+            const double d = double(a.plane(c)[i]) - double(b.plane(c)[i]);
             sum += d * d;
         }
-    return -10 * std::log10(sum / (3 * double(image.planeSize())));
+    return sum / (3 * double(a.planeSize()));
+}
+
+Image drawn(const PatchMesh& mesh) {
+    auto image = rasterize(mesh, wholePicture(mesh, glm::dvec2(1)));
+    EXPECT_TRUE(image);
+    return std::move(*image);
+}
+
+double psnrOf(const PatchMesh& mesh, const Image& image) {
+    return -10 * std::log10(meanSquare(drawn(mesh), image));
 }
 
 class FittedDocument : public ::testing::Test {
@@ -82,6 +91,21 @@ TEST_F(FittedDocument, TakesAboutAByteAFactorAndItsSite) {
         for (size_t c = 0; c < 3; ++c) factors += std::max<size_t>(3, d.mesh.spline(p).terms[c]);
     });
     EXPECT_LT(double(bytes->size()), 1.1 * double(factors));
+}
+
+TEST_F(FittedDocument, OfALargeErrorRoundsNoCoarserThanSeamsBear) {
+    Document d = fitted;
+    d.difference->psnr = 20;
+    const auto bytes = encodeDocument(d);
+    ASSERT_TRUE(bytes);
+    const PatchMesh back = decodeDocument(*bytes)->mesh;
+    const auto inFit = [](const PatchMesh& mesh) { return inBasis(drawn(mesh), ColourBasis::Opponent); };
+    EXPECT_NEAR(255 * std::sqrt(meanSquare(inFit(back), inFit(fitted.mesh))), .7, .15);
+    EXPECT_LT(measureSeams(back).mean, measureSeams(fitted.mesh).mean + 1);
+    // A step by the error alone would not keep them.
+    d.colourStep = 5 * *d.colourStep;
+    EXPECT_GT(measureSeams(decodeDocument(*encodeDocument(d))->mesh).mean,
+              measureSeams(fitted.mesh).mean + 1);
 }
 
 TEST_F(FittedDocument, OfUnknownErrorLosesLess) {
