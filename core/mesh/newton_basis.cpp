@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/round_up.h"
@@ -137,6 +138,40 @@ void NewtonBasis::evaluate(const float* x, const float* y, size_t count, float* 
         combine(terms.data(), kBlock, roundUp(points, kPointsAtOnce), [&](size_t k, const double* values) {
             for (size_t i = 0; i < points; ++i) out[k * stride + first + i] = float(values[i]);
         });
+    }
+}
+
+void NewtonBasis::evaluateSums(const float* x, const float* y, std::span<const uint32_t> firstPoint,
+                               float* out, size_t stride) const {
+    const size_t groups = firstPoint.size() - 1;
+    TESSERA_CHECK(groups <= stride);
+    // What the coefficients are of, summed before they are combined: that is most of the work.
+    std::vector<double> terms((kPolynomials + mSites.size()) * kBlock, 0), kernels;
+    for (size_t first = 0; first < groups; first += kBlock) {
+        const std::span<const uint32_t> starts =
+            firstPoint.subspan(first, std::min(kBlock, groups - first) + 1);
+        const size_t begin = starts.front(), points = starts.back() - begin;
+        kernels.resize(mSites.size() * points);
+        evaluateKernels(mCentres, x + begin, y + begin, points, kernels.data(), points);
+        for (size_t g = 0; g + 1 < starts.size(); ++g) {
+            terms[g] = double(starts[g + 1] - starts[g]);
+            terms[kBlock + g] = std::accumulate(x + starts[g], x + starts[g + 1], 0.0);
+            terms[2 * kBlock + g] = std::accumulate(y + starts[g], y + starts[g + 1], 0.0);
+        }
+        for (size_t j = 0; j < mSites.size(); ++j) {
+            const double* kernel = &kernels[j * points];
+            double* sums = &terms[(kPolynomials + j) * kBlock];
+            for (size_t g = 0; g + 1 < starts.size(); ++g) {
+                double sum = 0;
+                for (size_t i = starts[g]; i < starts[g + 1]; ++i) sum += kernel[i - begin];
+                sums[g] = sum;
+            }
+        }
+        combine(terms.data(), kBlock, roundUp(starts.size() - 1, kPointsAtOnce),
+                [&](size_t k, const double* values) {
+                    for (size_t g = 0; g + 1 < starts.size(); ++g)
+                        out[k * stride + first + g] = float(values[g]);
+                });
     }
 }
 

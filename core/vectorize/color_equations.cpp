@@ -35,12 +35,12 @@ struct Parts {
     };
     std::vector<Chunk> chunks;
 
-    void add(uint32_t id, uint32_t patch, std::span<const float> row, std::span<const float> scales) {
+    void add(uint32_t id, uint32_t patch, std::span<const float> row) {
         auto chunk =
             std::find_if(chunks.begin(), chunks.end(), [&](const Chunk& c) { return c.patch == patch; });
         if (chunk == chunks.end()) chunk = chunks.insert(chunk, {patch, {}, {}});
         chunk->ids.push_back(id);
-        chunk->rows.push(row, scales);
+        chunk->rows.push(row);
     }
     void shrink() {
         for (Chunk& chunk : chunks) {
@@ -49,22 +49,6 @@ struct Parts {
         }
     }
 };
-
-// Of each function at the sites of the lattice.
-std::vector<float> largestValues(const NewtonBasis& basis) {
-    constexpr float kLeast = 1e-6F;
-    std::array<float, kCentreSites> x{}, y{};
-    for (size_t s = 0; s < kCentreSites; ++s) {
-        x[s] = float(centreSites()[s].x);
-        y[s] = float(centreSites()[s].y);
-    }
-    Rows values(basis.size(), kCentreSites);
-    basis.evaluate(x.data(), y.data(), kCentreSites, values.data(), kCentreSites);
-    std::vector<float> largest;
-    for (int k = 0; k < basis.size(); ++k)
-        largest.push_back(std::max(kLeast, values.row(k).cwiseAbs().maxCoeff()));
-    return largest;
-}
 
 class EquationBuilder {
   public:
@@ -88,7 +72,6 @@ class EquationBuilder {
             patch.gram.assign(count * count, 0);
             patch.moments.assign(count * size_t(mesh.channels()), 0);
             patch.damping.assign(count, kRidge);
-            patch.scales = largestValues(mBases.back());
         }
     }
 
@@ -102,12 +85,8 @@ class EquationBuilder {
     bool held(uint32_t p) const { return m.patches[p].count == 0; }
     // How many factors a row has for a patch: its unknowns; of a held one its colours, channel by channel.
     size_t factorCount(uint32_t p) const { return size_t(held(p) ? mMesh.channels() : m.patches[p].count); }
-    std::span<const float> scales(uint32_t p) const {
-        static constexpr std::array<float, kMaxChannels> kOnes{1, 1, 1, 1};
-        if (held(p)) return {kOnes.data(), size_t(mMesh.channels())};
-        return m.patches[p].scales;
-    }
     void evaluateFactors(uint32_t p, const float* x, const float* y, size_t count, float* out) const;
+    Rows sumsOverCells(uint32_t p, const PatchCells& cells) const;
     struct Slopes;
     void evaluateSlopes(uint32_t p, Slopes& slopes) const;
     void reach(const Rect& box) {
@@ -149,6 +128,23 @@ void EquationBuilder::evaluateFactors(uint32_t p, const float* x, const float* y
     float* planes[kMaxChannels] = {};
     for (size_t c = 0; c < size_t(mMesh.channels()); ++c) planes[c] = out + c * count;
     evaluateSplines(mMesh.spline(PatchId(p)), mMesh.channels(), x, y, count, planes);
+}
+
+// Of each function over each cell's samples.
+Rows EquationBuilder::sumsOverCells(uint32_t p, const PatchCells& cells) const {
+    const auto functions = Eigen::Index(factorCount(p)), count = Eigen::Index(cells.cells.size());
+    Rows sums(functions, count);
+    if (!held(p)) {
+        mBases[p].evaluateSums(cells.x.data(), cells.y.data(), cells.firstSample, sums.data(), size_t(count));
+        return sums;
+    }
+    Rows values(functions, Eigen::Index(cells.x.size()));
+    evaluateFactors(p, cells.x.data(), cells.y.data(), cells.x.size(), values.data());
+    for (Eigen::Index k = 0; k < count; ++k) {
+        const uint32_t first = cells.firstSample[size_t(k)], end = cells.firstSample[size_t(k) + 1];
+        sums.col(k) = values.middleCols(first, end - first).rowwise().sum();
+    }
+    return sums;
 }
 
 // Factors and their derivatives along the domain's axes at points of one side of a patch.
@@ -194,15 +190,17 @@ std::vector<EquationBuilder::Foot> EquationBuilder::findFeet(PatchId p, const Pa
     std::vector<Foot> feet;
     if (!mBlur.inReach(p)) return feet;
     std::array<BlurTerm, kMaxBlurTerms> terms;
-    for (size_t i = 0; i < cells.at.size(); ++i) {
-        const int count = mBlur.terms(p, glm::dvec2(cells.at[i]), terms);
-        if (count > 0) shared[cells.cellOf[i]] = 1;
-        for (int t = 0; t < count; ++t) {
-            const BlurTerm& term = terms[size_t(t)];
-            const PatchCells::Cell& cell = cells.cells[cells.cellOf[i]];
-            const float weight = std::sqrt(cell.area) * cell.share * term.weight;
-            feet.push_back({term.own.index, cell.number, -weight, term.ownAt});
-            feet.push_back({term.other.index, cell.number, weight, term.otherAt});
+    for (size_t k = 0; k < cells.cells.size(); ++k) {
+        const PatchCells::Cell& cell = cells.cells[k];
+        for (size_t i = cells.firstSample[k]; i < cells.firstSample[k + 1]; ++i) {
+            const int count = mBlur.terms(p, glm::dvec2(cells.at[i]), terms);
+            if (count > 0) shared[k] = 1;
+            for (int t = 0; t < count; ++t) {
+                const BlurTerm& term = terms[size_t(t)];
+                const float weight = std::sqrt(cell.area) * cell.share * term.weight;
+                feet.push_back({term.own.index, cell.number, -weight, term.ownAt});
+                feet.push_back({term.other.index, cell.number, weight, term.otherAt});
+            }
         }
     }
     return feet;
@@ -230,7 +228,7 @@ void EquationBuilder::addFeet(std::vector<Foot> feet, Parts& parts) {
         for (size_t i = 0; i < n; ++i) {
             row += feet[first + i].weight * values.col(Eigen::Index(i));
             if (i + 1 < n && feet[first + i + 1].cell == feet[first + i].cell) continue;
-            parts.add(feet[first + i].cell, q, {row.data(), size_t(functions)}, scales(q));
+            parts.add(feet[first + i].cell, q, {row.data(), size_t(functions)});
             row.setZero();
         }
     }
@@ -239,20 +237,13 @@ void EquationBuilder::addFeet(std::vector<Foot> feet, Parts& parts) {
 // An equation counts as its cell's area.
 void EquationBuilder::addPatch(PatchId p, const PatchCells& cells, Parts& parts) {
     auto& patch = m.patches[p.index];
-    const size_t samples = cells.x.size();
     const auto count = Eigen::Index(cells.cells.size());
     const auto functions = Eigen::Index(factorCount(p.index));
-    Rows values(functions, Eigen::Index(samples));
-    evaluateFactors(p.index, cells.x.data(), cells.y.data(), samples, values.data());
     // By cell, its functions in a row.
     const auto stride = Eigen::Index(gramStride(size_t(functions)));
     Eigen::MatrixXf padded = Eigen::MatrixXf::Zero(stride, count);
     auto means = padded.topRows(functions);
-    constexpr Eigen::Index kTogether = 16;  // a cache line of floats
-    for (Eigen::Index first = 0; first < functions; first += kTogether)
-        for (size_t i = 0; i < samples; ++i)
-            for (Eigen::Index k = first; k < std::min(first + kTogether, functions); ++k)
-                means(k, cells.cellOf[i]) += values(k, Eigen::Index(i));
+    means = sumsOverCells(p.index, cells);
 
     // Cells that are not the patch's alone.
     std::vector<uint8_t> shared(cells.cells.size());
@@ -267,7 +258,7 @@ void EquationBuilder::addPatch(PatchId p, const PatchCells& cells, Parts& parts)
         covered += double(cell.coverage) * double(cell.area);
         means.col(k) *= root * cell.share;
         if (shared[size_t(k)]) {
-            parts.add(cell.number, p.index, {means.col(k).data(), size_t(functions)}, scales(p.index));
+            parts.add(cell.number, p.index, {means.col(k).data(), size_t(functions)});
             means.col(k).setZero();
         } else {
             for (int c = 0; c < mMesh.channels(); ++c)
@@ -337,7 +328,7 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
         const double w0 = sign * std::sqrt(weights.colour * share);
         const double w1 = sign * std::sqrt(weights.gradient * share);
         for (size_t k = 0; k < n; ++k) row[k] = float(w0 * slopes.value[k * Slopes::kStride + i]);
-        parts.add(seam.firstRow + m.seamStride * i, p.index, row, scales(p.index));
+        parts.add(seam.firstRow + m.seamStride * i, p.index, row);
         if (m.seamStride == 1) continue;
         // The step in the domain that goes a pixel along the edge's normal: J^-1 normal.
         const PatchPoint at = evaluateWithDerivatives(t, pointAt(i));
@@ -352,7 +343,7 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
             const size_t number = k * Slopes::kStride + i;
             row[k] = float(w1 * (slopes.alongX[number] * stepX + slopes.alongY[number] * stepY));
         }
-        parts.add(seam.firstRow + m.seamStride * i + 1, p.index, row, scales(p.index));
+        parts.add(seam.firstRow + m.seamStride * i + 1, p.index, row);
     }
 }
 
@@ -409,9 +400,9 @@ void EquationBuilder::gather(ColorEquations::Patch& patch, const std::vector<Par
     patch.rows.reserve(patch.rowIds.size(), size_t(patch.count));
     std::vector<float> row(size_t(patch.count), 0);
     for (size_t i = 0; i < places.size(); ++i) {
-        places[i].rows->addTo(places[i].row, patch.scales, row);
+        places[i].rows->addTo(places[i].row, row);
         if (i + 1 < places.size() && places[i + 1].id == places[i].id) continue;
-        patch.rows.push(row, patch.scales);
+        patch.rows.push(row);
         std::fill(row.begin(), row.end(), 0.0F);
     }
     for (Parts::Chunk* chunk : chunks) *chunk = {};
@@ -457,7 +448,7 @@ void EquationBuilder::finish(const ProgressPart& progress) {
                 if (number[chunk.ids[i]] == kNoRow) continue;
                 std::array<float, kMaxChannels> colours{};
                 const auto channels = size_t(mMesh.channels());
-                chunk.rows.addTo(i, scales(chunk.patch), {colours.data(), channels});
+                chunk.rows.addTo(i, {colours.data(), channels});
                 for (size_t c = 0; c < channels; ++c)
                     m.targets[c * rows + number[chunk.ids[i]]] -= colours[c];
             }

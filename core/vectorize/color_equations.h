@@ -26,7 +26,6 @@ struct ColorEquations {
         std::vector<float> gram;       // (count x count), symmetric; sums of floats
         std::vector<double> damping;   // count: to be added to its diagonal
         std::vector<double> moments;   // (channels x count)
-        std::vector<float> scales;     // count: of the rows' columns, about a function's largest value
         std::vector<uint32_t> rowIds;  // ascending
         PackedRows rows;               // (rowIds.size() x count)
     };

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/mesh/bezier.h"
 #include "core/mesh/blur_profile.h"
+#include "core/mesh/scan_conversion.h"
 #include "core/vectorize/site_pursuit.h"
 
 namespace tessera {
@@ -33,9 +34,25 @@ void markNear(const BezierCurve& curve, double reach, FitGrid& grid) {
     }
 }
 
+// Marks the pixels of patches that have one for each place where splines may have a centre.
+void markLargePatches(const PatchMesh& mesh, double termsPerPatch, FitGrid& grid) {
+    const size_t enough = candidateSites(termsPerPatch).size();
+    const ScanConversion scan(mesh, wholePicture(mesh, {1, 1}));
+    std::vector<PixelRun> runs;
+    for (size_t i = 0; i < scan.patches().size(); ++i) {
+        scan.runs(scan.patches()[i], scan.bounds(i), runs);
+        size_t pixels = 0;
+        for (const PixelRun& run : runs) pixels += size_t(run.end - run.begin);
+        if (pixels < enough) continue;
+        for (const PixelRun& run : runs)
+            std::fill_n(grid.whole.begin() + ptrdiff_t(run.row) * grid.width + run.begin, run.end - run.begin,
+                        uint8_t{1});
+    }
+}
+
 }  // namespace
 
-FitPicture::FitPicture(const PatchMesh& mesh, const Image& picture, Image fine)
+FitPicture::FitPicture(const PatchMesh& mesh, double termsPerPatch, const Image& picture, Image fine)
     : grid{picture.width(), picture.height(), fine.width() / picture.width(), {}}, means(std::move(fine)) {
     TESSERA_CHECK(means.width() == picture.width() * grid.perSide &&
                   means.height() == picture.height() * grid.perSide);
@@ -46,6 +63,7 @@ FitPicture::FitPicture(const PatchMesh& mesh, const Image& picture, Image fine)
         const double blur = kBlurReach * double(std::max(curve.blurSigma[0], curve.blurSigma[1]));
         markNear(toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e))), std::max(kStepPx, blur), grid);
     });
+    markLargePatches(mesh, termsPerPatch, grid);
     parallelFor(size_t(grid.height), 16, [&](size_t begin, size_t end) {
         for (int c = 0; c < picture.channels(); ++c)
             for (int y = int(begin); y < int(end); ++y)

@@ -48,9 +48,9 @@ struct FitPicture {
     explicit FitPicture(Image picture)
         : grid{picture.width(), picture.height(), 1, {}}, means(std::move(picture)) {}
     // `fine` is `picture` enlarged by a whole factor (between pixels as one expects it there: enlargedMeans
-    // of resample.h). Near features of the mesh, where no enlargement knows on which side of them it is,
-    // pixels stay whole.
-    FitPicture(const PatchMesh& mesh, const Image& picture, Image fine);
+    // of resample.h). Pixels stay whole near features of the mesh, where no enlargement knows on which side
+    // of them it is, and in patches that have as many as splines of termsPerPatch have places for centres.
+    FitPicture(const PatchMesh& mesh, double termsPerPatch, const Image& picture, Image fine);
 };
 
 // Into how many squares a side pixels are cut, so that a patch has some of them for each place where its

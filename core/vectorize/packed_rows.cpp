@@ -49,20 +49,19 @@ void addRows(const int16_t* entries, const float* scales, size_t rows, size_t st
 
 }  // namespace
 
-void PackedRows::push(std::span<const float> row, std::span<const float> columnScales) {
+void PackedRows::push(std::span<const float> row) {
     if (mScales.empty()) mStride = padded(row.size());
-    TESSERA_CHECK(padded(row.size()) == mStride && columnScales.size() == row.size());
+    TESSERA_CHECK(padded(row.size()) == mStride);
     float most = 0;
-    for (size_t k = 0; k < row.size(); ++k) most = std::max(most, std::abs(row[k]) / columnScales[k]);
+    for (const float entry : row) most = std::max(most, std::abs(entry));
     const float scale = most > 0 ? most / 32767 : 1;
     mScales.push_back(scale);
-    for (size_t k = 0; k < row.size(); ++k) mEntries.push_back(nearest(row[k] / (columnScales[k] * scale)));
+    for (const float entry : row) mEntries.push_back(nearest(entry / scale));
     mEntries.resize(mScales.size() * mStride, 0);
 }
 
-void PackedRows::addTo(size_t i, std::span<const float> columnScales, std::span<float> row) const {
-    for (size_t k = 0; k < row.size(); ++k)
-        row[k] += float(mEntries[i * mStride + k]) * mScales[i] * columnScales[k];
+void PackedRows::addTo(size_t i, std::span<float> row) const {
+    for (size_t k = 0; k < row.size(); ++k) row[k] += float(mEntries[i * mStride + k]) * mScales[i];
 }
 
 void PackedRows::reserve(size_t rows, size_t columns) {

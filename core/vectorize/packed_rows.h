@@ -1,5 +1,4 @@
-// Rows of a matrix in half the memory of floats: 16-bit integers times a scale of the column, which the
-// caller keeps, and one of the row.
+// Rows of a matrix in half the memory of floats: 16-bit integers times a scale of the row.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +10,18 @@ namespace tessera {
 
 class PackedRows {
   public:
-    // `columnScales`, one a column and above 0, is what an entry is measured in; where all entries of a row
-    // are about as large, so measured, each is off by at most 1/65534 of itself.
-    void push(std::span<const float> row, std::span<const float> columnScales);
-    // Adds row i to `row`.
-    void addTo(size_t i, std::span<const float> columnScales, std::span<float> row) const;
+    // Each entry is off by at most 1/65534 of the row's largest.
+    void push(std::span<const float> row);
+    // Adds row i to `row`, or its first row.size() entries.
+    void addTo(size_t i, std::span<float> row) const;
 
     size_t size() const { return mScales.size(); }
     void reserve(size_t rows, size_t columns);
     void shrink();
 
-    // The products of all rows with x, whose entries are by the first columns and already times the columns'
-    // scales.
+    // The products of all rows with x, whose entries are by the first columns.
     void multiply(std::span<const float> x, std::span<float> products) const;
-    // The sum of all rows times their factor, over the first sum.size() columns; yet to be multiplied with
-    // the columns' scales.
+    // The sum of all rows times their factor, over the first sum.size() columns.
     void multiplyTransposed(std::span<const float> factors, std::span<float> sum) const;
 
   private:

@@ -2,6 +2,7 @@
 #include "core/vectorize/patch_cells.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/mesh/patch_inverse.h"
 
@@ -44,28 +45,25 @@ CellSampler::CellSampler(const PatchMesh& mesh, const FitGrid& grid, int samples
 
 // `places` in `cells` by square of `squares`.
 void CellSampler::addSamples(const PixelRun& run, const PixelRect& squares, std::vector<uint32_t>& places,
-                             PatchCells& result) const {
+                             std::vector<PatchCells::Cell>& cells, std::vector<Sample>& samples) const {
     const uint32_t columns = uint32_t(mGrid.width * mGrid.perSide);
     for (int k = run.begin; k < run.end; ++k) {
         const uint32_t number = mGrid.cellAt(k / mSide, run.row / mSide);
         const int column = int(number % columns) - squares.x0, row = int(number / columns) - squares.y0;
         uint32_t& place = places[size_t(row) * size_t(squares.x1 - squares.x0) + size_t(column)];
         if (place == kNone) {
-            place = uint32_t(result.cells.size());
+            place = uint32_t(cells.size());
             const float area = mGrid.area(number);
             const float perPx = float(mSide * mGrid.perSide) * float(mSide * mGrid.perSide);
-            result.cells.push_back({number, area, 1 / (perPx * area), 0});
+            cells.push_back({number, area, 1 / (perPx * area), 0});
         }
-        result.cells[place].coverage += result.cells[place].share;
-        result.cellOf.push_back(place);
-        result.at.push_back({float(mScan.grid().centreX(k)), float(mScan.grid().centreY(run.row))});
+        cells[place].coverage += cells[place].share;
+        samples.push_back({place, {float(mScan.grid().centreX(k)), float(mScan.grid().centreY(run.row))}});
     }
 }
 
 void CellSampler::sample(size_t i, PatchCells& result) const {
     result.cells.clear();
-    result.cellOf.clear();
-    result.at.clear();
     const PatchId p = mScan.patches()[i];
     const PixelRect& box = mScan.bounds(i);
     std::vector<PixelRun> runs;
@@ -76,7 +74,14 @@ void CellSampler::sample(size_t i, PatchCells& result) const {
                             ((box.x1 - 1) / perPx + 1) * mGrid.perSide,
                             ((box.y1 - 1) / perPx + 1) * mGrid.perSide};
     std::vector<uint32_t> places(size_t(squares.x1 - squares.x0) * size_t(squares.y1 - squares.y0), kNone);
-    for (const PixelRun& run : runs) addSamples(run, squares, places, result);
+    std::vector<Sample> samples;
+    for (const PixelRun& run : runs) addSamples(run, squares, places, result.cells, samples);
+    result.firstSample.assign(result.cells.size() + 1, 0);
+    for (const Sample& s : samples) ++result.firstSample[s.cell + 1];
+    std::partial_sum(result.firstSample.begin(), result.firstSample.end(), result.firstSample.begin());
+    std::vector<uint32_t> next(result.firstSample.begin(), result.firstSample.end() - 1);
+    result.at.resize(samples.size());
+    for (const Sample& s : samples) result.at[next[s.cell]++] = s.at;
     findParameters(mMesh.controlPoints(p), result);
 }
 

@@ -20,8 +20,9 @@ struct PatchCells {
         float coverage;  // share of its samples that lie in the patch
     };
     std::vector<Cell> cells;
-    // The samples: their cell (a place in `cells`), image point and parametric domain point.
-    std::vector<uint32_t> cellOf;
+    // The samples, cell by cell, those of cells[k] from firstSample[k] to firstSample[k + 1]: their image
+    // point and parametric domain point.
+    std::vector<uint32_t> firstSample;
     std::vector<glm::vec2> at;
     std::vector<float> x, y;
 };
@@ -36,8 +37,13 @@ class CellSampler {
     void sample(size_t i, PatchCells& result) const;
 
   private:
+    // A sample and its cell, a place in PatchCells::cells.
+    struct Sample {
+        uint32_t cell;
+        glm::vec2 at;
+    };
     void addSamples(const PixelRun& run, const PixelRect& squares, std::vector<uint32_t>& places,
-                    PatchCells& result) const;
+                    std::vector<PatchCells::Cell>& cells, std::vector<Sample>& samples) const;
 
     const PatchMesh& mMesh;
     const FitGrid& mGrid;

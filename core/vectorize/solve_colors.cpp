@@ -46,7 +46,7 @@ double dot(const PatchVectors& a, const PatchVectors& b) {
 MatrixXf unpackedRows(const ColorEquations::Patch& patch, size_t columns) {
     MatrixXf rows = MatrixXf::Zero(Eigen::Index(gramStride(columns)), Eigen::Index(patch.rows.size()));
     for (size_t i = 0; i < patch.rows.size(); ++i)
-        patch.rows.addTo(i, {patch.scales.data(), columns}, {rows.col(Eigen::Index(i)).data(), columns});
+        patch.rows.addTo(i, {rows.col(Eigen::Index(i)).data(), columns});
     return rows;
 }
 Eigen::Map<const MatrixXf> gramOf(const ColorEquations::Patch& patch) {
@@ -54,9 +54,6 @@ Eigen::Map<const MatrixXf> gramOf(const ColorEquations::Patch& patch) {
 }
 std::span<const float> spanOf(const VectorXf& v) {
     return {v.data(), size_t(v.size())};
-}
-Eigen::Map<const VectorXf> scalesOf(const ColorEquations::Patch& patch) {
-    return {patch.scales.data(), patch.count};
 }
 Eigen::Map<const VectorXd> dampingOf(const ColorEquations::Patch& patch) {
     return {patch.damping.data(), patch.count};
@@ -124,9 +121,9 @@ class ChannelSystem {
     void apply(const PatchVectors& x, PatchVectors& ax) {
         forPatches([&](size_t p) {
             const auto& patch = m.patches[p];
-            const VectorXf scaled = x[p].cast<float>().cwiseProduct(scalesOf(patch).head(mTerms[p]));
+            const VectorXf rounded = x[p].cast<float>();
             mPartial[p].resize(Eigen::Index(patch.rows.size()));
-            patch.rows.multiply(spanOf(scaled), {mPartial[p].data(), patch.rows.size()});
+            patch.rows.multiply(spanOf(rounded), {mPartial[p].data(), patch.rows.size()});
         });
         parallelFor(size_t(mTotals.size()), 4096, [&](size_t begin, size_t end) {
             for (size_t row = begin; row < end; ++row) {
@@ -144,7 +141,6 @@ class ChannelSystem {
             const int n = mTerms[p];
             VectorXf sum(n);
             patch.rows.multiplyTransposed(spanOf(totals), {sum.data(), size_t(n)});
-            sum = sum.cwiseProduct(scalesOf(patch).head(n));
             sum.noalias() += gramOf(patch).topLeftCorner(n, n) * x[p].cast<float>();
             ax[p] = dampingOf(patch).head(n).cwiseProduct(x[p]) + sum.cast<double>();
         });

@@ -135,7 +135,7 @@ Result<PatchMesh> fitSplines(PatchMesh mesh, const Image& image, Image sharp, co
     if (const int perSide = squaresPerSide(mesh, settings.termsPerPatch); perSide > 1) {
         Image fine = enlargedMeans(image, perSide, progress.stopToken());
         sharp = inBasis(virtualSharp(fine, network, progress.stopToken()), ColourBasis::Opponent);
-        picture = FitPicture(mesh, inBasis(image, ColourBasis::Opponent),
+        picture = FitPicture(mesh, settings.termsPerPatch, inBasis(image, ColourBasis::Opponent),
                              inBasis(std::move(fine), ColourBasis::Opponent));
     }
     const auto sites = chooseSites(mesh, sharp, settings.termsPerPatch, {progress, .05, .25});
