@@ -297,7 +297,7 @@ void EquationBuilder::addCells(const ProgressPart& progress) {
 // One patch's side of a seam: colours, and derivatives across the edge.
 void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, double sign,
                               const SeamWeights& weights, Parts& parts) {
-    const uint32_t samples = seam.rowCount / m.seamStride;
+    const uint32_t samples = seam.points;
     const HalfedgeMesh& mesh = mMesh.connectivity();
     const PatchId p = mesh.face(h);
     const auto sides = mesh.sides(p);
@@ -324,12 +324,13 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
     const size_t n = factorCount(p.index);
     std::vector<float> row(n);
     for (uint32_t i = 0; i < samples; ++i) {
-        const double share = seam.length(i * m.seamStride, m.seamStride);
-        const double w0 = sign * std::sqrt(weights.colour * share);
-        const double w1 = sign * std::sqrt(weights.gradient * share);
-        for (size_t k = 0; k < n; ++k) row[k] = float(w0 * slopes.value[k * Slopes::kStride + i]);
-        parts.add(seam.firstRow + m.seamStride * i, p.index, row);
-        if (m.seamStride == 1) continue;
+        const double weight = sign * std::sqrt(weights.colour * seam.length(i));
+        for (size_t k = 0; k < n; ++k) row[k] = float(weight * slopes.value[k * Slopes::kStride + i]);
+        parts.add(seam.firstRow + i, p.index, row);
+    }
+    if (weights.gradient == 0) return;
+    for (uint32_t i = 0; i < samples; ++i) {
+        const double weight = sign * std::sqrt(weights.gradient * seam.length(i));
         // The step in the domain that goes a pixel along the edge's normal: J^-1 normal.
         const PatchPoint at = evaluateWithDerivatives(t, pointAt(i));
         const double det = cross(at.dv, at.dw);
@@ -341,9 +342,9 @@ void EquationBuilder::addSide(HalfedgeId h, const ColorEquations::Seam& seam, do
         const double stepX = dv + .5 * dw, stepY = kDomainHeight * dw;
         for (size_t k = 0; k < n; ++k) {
             const size_t number = k * Slopes::kStride + i;
-            row[k] = float(w1 * (slopes.alongX[number] * stepX + slopes.alongY[number] * stepY));
+            row[k] = float(weight * (slopes.alongX[number] * stepX + slopes.alongY[number] * stepY));
         }
-        parts.add(seam.firstRow + m.seamStride * i + 1, p.index, row);
+        parts.add(seam.firstRow + samples + i, p.index, row);
     }
 }
 
@@ -355,7 +356,6 @@ void EquationBuilder::addSeams(const SeamWeights& weights, const ProgressPart& p
     static_assert(kMost <= Slopes::kStride);
     std::vector<HalfedgeId> halfedges;  // of m.seams
     uint32_t rows = m.cellRows;
-    m.seamStride = weights.gradient > 0 ? 2 : 1;
     mMesh.forEachEdge([&](EdgeId e) {
         if (mesh.onBorder(e) || mMesh.curve(e).feature || mMesh.curve(e).colourBreak) return;
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
@@ -363,9 +363,8 @@ void EquationBuilder::addSeams(const SeamWeights& weights, const ProgressPart& p
         const double length = toPixels(mMesh.controlPoints(h)).length();
         const int samples = std::clamp(int(length * kSamplesPerPx), kLeast, kMost);
         halfedges.push_back(h);
-        const uint32_t count = uint32_t(samples) * m.seamStride;
-        m.seams.push_back({rows, count, length / double(samples - 1), weights.colour});
-        rows += count;
+        m.seams.push_back({rows, uint32_t(samples), length / double(samples - 1), weights.colour});
+        rows += uint32_t(weights.gradient > 0 ? 2 * samples : samples);
     });
     const size_t first = mParts.size();
     mParts.resize(first + halfedges.size());

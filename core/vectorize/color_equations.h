@@ -40,19 +40,19 @@ struct ColorEquations {
     size_t rowCount = 0;
     std::vector<float> targets;  // (channels x rowCount)
     uint32_t cellRows = 0;       // rows from here on are of seams
-    // The rows of one edge, at points evenly spaced from end to end: colours, or by turns colours and
-    // gradients. The square of what a row of colours comes to is weight * length * difference^2.
+    // The rows of one edge: the colours at points evenly spaced from end to end, then, where they have a
+    // weight, the gradients there. The square of what a row of colours comes to is
+    // weight * length * difference^2.
     struct Seam {
-        uint32_t firstRow, rowCount;
-        double spacing;  // px; the ends have half as much length
+        uint32_t firstRow, points;
+        double spacing;  // px
         double weight;
 
-        double length(uint32_t row, uint32_t stride) const {
-            return row == 0 || row + stride >= rowCount ? .5 * spacing : spacing;
+        double length(uint32_t point) const {
+            return point == 0 || point + 1 == points ? .5 * spacing : spacing;
         }
     };
     std::vector<Seam> seams;
-    uint32_t seamStride = 1;  // 2 where there are rows of gradients
 };
 
 struct SeamWeights {

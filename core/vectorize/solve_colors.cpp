@@ -222,14 +222,12 @@ double seamExcess(const ColorEquations& equations, const std::vector<SiteChoice>
         ChannelSystem system(equations, choices, weights, c);
         const VectorXf& totals = system.totals(factors[size_t(c)]);
         for (const ColorEquations::Seam& seam : equations.seams)
-            for (uint32_t i = 0; i < seam.rowCount; i += equations.seamStride)
+            for (uint32_t i = 0; i < seam.points; ++i)
                 differences[size_t(c)].push_back(
-                    float(double(totals(seam.firstRow + i)) /
-                          std::sqrt(seam.weight * seam.length(i, equations.seamStride))));
+                    float(double(totals(seam.firstRow + i)) / std::sqrt(seam.weight * seam.length(i))));
     }
     for (const ColorEquations::Seam& seam : equations.seams)
-        for (uint32_t i = 0; i < seam.rowCount; i += equations.seamStride)
-            lengths.push_back(seam.length(i, equations.seamStride));
+        for (uint32_t i = 0; i < seam.points; ++i) lengths.push_back(seam.length(i));
     float* planes[3] = {differences[0].data(), differences[1].data(), differences[2].data()};
     toWorking(ColourBasis::Opponent, planes, lengths.size());
 
