@@ -42,11 +42,12 @@ double dot(const PatchVectors& a, const PatchVectors& b) {
     return sum;
 }
 
-// The rows' first `columns` columns, row after row in columns of the result, which has gramStride of them.
-MatrixXf unpackedRows(const ColorEquations::Patch& patch, size_t columns) {
-    MatrixXf rows = MatrixXf::Zero(Eigen::Index(gramStride(columns)), Eigen::Index(patch.rows.size()));
+// Row after row in columns of the result, which has gramStride rows.
+MatrixXf unpackedRows(const ColorEquations::Patch& patch) {
+    const auto count = size_t(patch.count);
+    MatrixXf rows = MatrixXf::Zero(Eigen::Index(gramStride(count)), Eigen::Index(patch.rows.size()));
     for (size_t i = 0; i < patch.rows.size(); ++i)
-        patch.rows.addTo(i, {rows.col(Eigen::Index(i)).data(), columns});
+        patch.rows.addTo(i, {rows.col(Eigen::Index(i)).data(), count});
     return rows;
 }
 Eigen::Map<const MatrixXf> gramOf(const ColorEquations::Patch& patch) {
@@ -59,94 +60,106 @@ Eigen::Map<const VectorXd> dampingOf(const ColorEquations::Patch& patch) {
     return {patch.damping.data(), patch.count};
 }
 
+// Each patch by itself, others' shares in common rows left out, by Cholesky. Channels have a patch's first
+// terms, and the factor of a matrix's first rows and columns is a part of its factor: one serves them all.
+class Preconditioner {
+  public:
+    // `weights` of the rows' squares. Incomplete where progress says stop.
+    Preconditioner(const ColorEquations& equations, const VectorXf& weights, const ProgressPart& progress)
+        : mFactors(equations.patches.size()) {
+        parallelFor(mFactors.size(), 8, [&](size_t begin, size_t end) {
+            for (size_t p = begin; p < end && !progress.stopRequested(); ++p) {
+                const auto& patch = equations.patches[p];
+                if (patch.count == 0) continue;
+                const auto count = size_t(patch.count);
+                VectorXf rootWeights(Eigen::Index(patch.rowIds.size()));
+                for (size_t i = 0; i < patch.rowIds.size(); ++i)
+                    rootWeights(Eigen::Index(i)) = std::sqrt(weights(patch.rowIds[i]));
+                MatrixXf rows = unpackedRows(patch);
+                rows *= rootWeights.asDiagonal();
+                const std::vector<float> own =
+                    gram({rows.data(), size_t(rows.size())}, patch.rows.size(), count);
+                MatrixXd normal =
+                    gramOf(patch).cast<double>() +
+                    Eigen::Map<const MatrixXf>(own.data(), patch.count, patch.count).cast<double>();
+                normal.diagonal() += dampingOf(patch);
+                mFactors[p] = normal.llt().matrixLLT().cast<float>();
+            }
+        });
+    }
+
+    // Of the patch's first r.size() terms.
+    VectorXd solve(size_t p, const VectorXd& r) const {
+        VectorXf solved = r.cast<float>();
+        const auto first = mFactors[p].topLeftCorner(r.size(), r.size());
+        const auto lower = first.triangularView<Eigen::Lower>();
+        lower.solveInPlace(solved);
+        lower.transpose().solveInPlace(solved);
+        return solved.cast<double>();
+    }
+
+  private:
+    std::vector<MatrixXf> mFactors;  // lower triangles, rounded
+};
+
 // The normal equations of one channel, A x = b, with patches' first terms alone.
 class ChannelSystem {
   public:
-    // `weights` of the rows' squares.
+    // `weights` of the rows' squares. Keeps references to all but the choices.
     ChannelSystem(const ColorEquations& equations, const std::vector<SiteChoice>& choices,
                   const VectorXf& weights, int channel)
         : m(equations),
           mWeights(weights),
           mChannel(channel),
           mTerms(equations.patches.size(), 0),
-          mFactors(equations.patches.size()),
           mPartial(equations.patches.size()),
-          mTotals(Eigen::Index(equations.rowCount)) {
+          mSums(Eigen::Index(equations.rowCount)) {
         for (size_t p = 0; p < m.patches.size(); ++p)
             if (m.patches[p].count > 0) mTerms[p] = choices[p].terms[size_t(channel)];
     }
 
-    // The right side and the preconditioner, which a solution needs. False where progress says stop.
-    bool factorize(const ProgressPart& progress) {
-        const int channel = mChannel;
-        mRight.resize(m.patches.size());
-        parallelFor(m.patches.size(), 8, [&](size_t begin, size_t end) {
-            for (size_t p = begin; p < end && !progress.stopRequested(); ++p) {
-                const auto& patch = m.patches[p];
-                if (patch.count == 0) continue;
-                const int n = mTerms[p];
-                VectorXf targets(Eigen::Index(patch.rowIds.size())), rootWeights(targets.size());
-                for (size_t i = 0; i < patch.rowIds.size(); ++i) {
-                    const float weight = mWeights(patch.rowIds[i]);
-                    rootWeights(Eigen::Index(i)) = std::sqrt(weight);
-                    targets(Eigen::Index(i)) =
-                        weight * m.targets[size_t(channel) * m.rowCount + patch.rowIds[i]];
-                }
-                MatrixXf rows = unpackedRows(patch, size_t(n));
-                mRight[p] = Eigen::Map<const VectorXd>(patch.moments.data() + channel * patch.count, n) +
-                            (rows.topRows(n) * targets).cast<double>();
-                rows *= rootWeights.asDiagonal();
-                const std::vector<float> own =
-                    gram({rows.data(), size_t(rows.size())}, patch.rows.size(), size_t(n));
-                MatrixXd normal = gramOf(patch).topLeftCorner(n, n).cast<double>() +
-                                  Eigen::Map<const MatrixXf>(own.data(), n, n).cast<double>();
-                normal.diagonal() += dampingOf(patch).head(n);
-                mFactors[p] = normal.llt().matrixLLT().cast<float>();
-            }
-        });
-        return !progress.stopRequested();
-    }
-
-    // Each patch by itself, others' shares in common rows left out: the preconditioner.
-    void precondition(const PatchVectors& r, PatchVectors& z) const {
+    // b.
+    PatchVectors right() const {
+        PatchVectors right(m.patches.size());
+        const float* wanted = &m.targets[size_t(mChannel) * m.rowCount];
         forPatches([&](size_t p) {
-            VectorXf solved = r[p].cast<float>();
-            const auto lower = mFactors[p].triangularView<Eigen::Lower>();
-            lower.solveInPlace(solved);
-            lower.transpose().solveInPlace(solved);
-            z[p] = solved.cast<double>();
+            const auto& patch = m.patches[p];
+            right[p] = Eigen::Map<const VectorXd>(patch.moments.data() + mChannel * patch.count, mTerms[p]) +
+                       timesRows(p, [&](uint32_t row) { return mWeights(row) * wanted[row]; }).cast<double>();
+        });
+        return right;
+    }
+
+    // A x.
+    void apply(const PatchVectors& x, PatchVectors& ax) {
+        sumRows(x);
+        forPatches([&](size_t p) {
+            const auto& patch = m.patches[p];
+            const int n = mTerms[p];
+            VectorXf sum = timesRows(p, [&](uint32_t row) { return mWeights(row) * mSums(row); });
+            sum.noalias() += gramOf(patch).topLeftCorner(n, n) * x[p].cast<float>();
+            ax[p] = dampingOf(patch).head(n).cwiseProduct(x[p]) + sum.cast<double>();
         });
     }
 
-    void apply(const PatchVectors& x, PatchVectors& ax) {
+    // What each row comes to at x, before its weight.
+    const VectorXf& sumRows(const PatchVectors& x) {
         forPatches([&](size_t p) {
             const auto& patch = m.patches[p];
             const VectorXf rounded = x[p].cast<float>();
             mPartial[p].resize(Eigen::Index(patch.rows.size()));
             patch.rows.multiply(spanOf(rounded), {mPartial[p].data(), patch.rows.size()});
         });
-        parallelFor(size_t(mTotals.size()), 4096, [&](size_t begin, size_t end) {
+        parallelFor(size_t(mSums.size()), 4096, [&](size_t begin, size_t end) {
             for (size_t row = begin; row < end; ++row) {
                 float sum = 0;
                 for (uint32_t i = m.firstEntry[row]; i < m.firstEntry[row + 1]; ++i)
                     sum += mPartial[m.entries[i].patch](m.entries[i].place);
-                mTotals(Eigen::Index(row)) = mWeights(Eigen::Index(row)) * sum;
+                mSums(Eigen::Index(row)) = sum;
             }
         });
-        forPatches([&](size_t p) {
-            const auto& patch = m.patches[p];
-            VectorXf totals(Eigen::Index(patch.rowIds.size()));
-            for (size_t i = 0; i < patch.rowIds.size(); ++i)
-                totals(Eigen::Index(i)) = mTotals(patch.rowIds[i]);
-            const int n = mTerms[p];
-            VectorXf sum(n);
-            patch.rows.multiplyTransposed(spanOf(totals), {sum.data(), size_t(n)});
-            sum.noalias() += gramOf(patch).topLeftCorner(n, n) * x[p].cast<float>();
-            ax[p] = dampingOf(patch).head(n).cwiseProduct(x[p]) + sum.cast<double>();
-        });
+        return mSums;
     }
-
-    const PatchVectors& right() const { return mRight; }
 
     template <class Do>
     void forPatches(Do&& visit) const {
@@ -156,44 +169,44 @@ class ChannelSystem {
         });
     }
 
-    // What each row comes to at x, before its weight.
-    const VectorXf& totals(const PatchVectors& x) {
-        PatchVectors unused(x.size());
-        apply(x, unused);
-        mTotals.array() /= mWeights.array();
-        return mTotals;
+  private:
+    // The sum of a patch's rows times what `factor` says of them.
+    template <class Factor>
+    VectorXf timesRows(size_t p, Factor&& factor) const {
+        const auto& patch = m.patches[p];
+        VectorXf factors(Eigen::Index(patch.rowIds.size())), sum(mTerms[p]);
+        for (size_t i = 0; i < patch.rowIds.size(); ++i) factors(Eigen::Index(i)) = factor(patch.rowIds[i]);
+        patch.rows.multiplyTransposed(spanOf(factors), {sum.data(), size_t(sum.size())});
+        return sum;
     }
 
-  private:
     const ColorEquations& m;
     const VectorXf& mWeights;
     int mChannel;
     std::vector<int> mTerms;
-    std::vector<MatrixXf> mFactors;  // Cholesky's lower triangles, rounded: they only precondition
-    PatchVectors mRight;
     std::vector<VectorXf> mPartial;  // by patch and row: its share
-    VectorXf mTotals;                // by row
+    VectorXf mSums;                  // by row
 };
 
 // Preconditioned conjugate gradients from x (or nothing), until the residual is `tolerance` of that of the
 // patches by themselves.
-PatchVectors conjugateGradients(ChannelSystem& system, PatchVectors x, double tolerance, int& iterations,
-                                const ProgressPart& progress) {
+PatchVectors conjugateGradients(ChannelSystem& system, const Preconditioner& preconditioner, PatchVectors x,
+                                double tolerance, int& iterations, const ProgressPart& progress) {
     constexpr int kMaxIterations = 60;
-    const size_t count = system.right().size();
-    PatchVectors r(count), z(count), d(count), ad(count);
-    if (x.empty()) {
-        x.resize(count);
-        system.precondition(system.right(), x);
-    }
+    const auto precondition = [&](const PatchVectors& r, PatchVectors& z) {
+        system.forPatches([&](size_t p) { z[p] = preconditioner.solve(p, r[p]); });
+    };
+    PatchVectors r = system.right();
+    const size_t count = r.size();
+    PatchVectors alone(count), z(count), d(count), ad(count);
+    precondition(r, alone);
+    const double enough = tolerance * tolerance * dot(r, alone);
+    if (x.empty()) x = std::move(alone);
     system.apply(x, ad);
-    for (size_t p = 0; p < count; ++p) r[p] = system.right()[p] - ad[p];
-    system.precondition(r, z);
-    d.resize(count);
-    double rz = dot(r, z);
-    system.precondition(system.right(), d);
-    const double enough = tolerance * tolerance * dot(system.right(), d);
+    system.forPatches([&](size_t p) { r[p] -= ad[p]; });
+    precondition(r, z);
     d = z;
+    double rz = dot(r, z);
     const double first = std::log(rz / enough);
     for (int i = 0; i < kMaxIterations && rz > enough; ++i, ++iterations) {
         if (!progress.step(1 - std::log(rz / enough) / first)) break;
@@ -203,7 +216,7 @@ PatchVectors conjugateGradients(ChannelSystem& system, PatchVectors x, double to
             x[p] += alpha * d[p];
             r[p] -= alpha * ad[p];
         });
-        system.precondition(r, z);
+        precondition(r, z);
         const double next = dot(r, z), beta = next / rz;
         system.forPatches([&](size_t p) { d[p] = z[p] + beta * d[p]; });
         rz = next;
@@ -220,11 +233,11 @@ double seamExcess(const ColorEquations& equations, const std::vector<SiteChoice>
     std::vector<double> lengths;
     for (int c = 0; c < channels; ++c) {
         ChannelSystem system(equations, choices, weights, c);
-        const VectorXf& totals = system.totals(factors[size_t(c)]);
+        const VectorXf& sums = system.sumRows(factors[size_t(c)]);
         for (const ColorEquations::Seam& seam : equations.seams)
             for (uint32_t i = 0; i < seam.points; ++i)
                 differences[size_t(c)].push_back(
-                    float(double(totals(seam.firstRow + i)) / std::sqrt(seam.weight * seam.length(i))));
+                    float(double(sums(seam.firstRow + i)) / std::sqrt(seam.weight * seam.length(i))));
     }
     for (const ColorEquations::Seam& seam : equations.seams)
         for (uint32_t i = 0; i < seam.points; ++i) lengths.push_back(seam.length(i));
@@ -318,13 +331,16 @@ Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vec
     const int passes = settings.seamPasses;
     for (int pass = 0; pass < passes; ++pass) {
         const bool last = pass + 1 == passes;
+        const auto partOf = [&](double solution) {
+            const double solves = passes * mesh.channels(), before = pass * mesh.channels() + solution;
+            return progress.part(.5 + .5 * before / solves, .5 + .5 * (before + 1) / solves);
+        };
+        const Preconditioner preconditioner(equations, weights, partOf(0));
         for (int c = 0; c < mesh.channels(); ++c) {
-            const double solves = passes * mesh.channels(), before = pass * mesh.channels() + c;
-            const ProgressPart part =
-                progress.part(.5 + .5 * before / solves, .5 + .5 * (before + 1) / solves);
+            const ProgressPart part = partOf(c);
+            if (part.stopRequested()) return stopped();
             ChannelSystem system(equations, choices, weights, c);
-            if (!system.factorize(part)) return stopped();
-            factors[size_t(c)] = conjugateGradients(system, std::move(factors[size_t(c)]),
+            factors[size_t(c)] = conjugateGradients(system, preconditioner, std::move(factors[size_t(c)]),
                                                     last ? kTolerance : kFirstTolerance, iterations, part);
             if (!part.step(1)) return stopped();
         }
@@ -352,10 +368,10 @@ std::vector<PatchId> refitColors(PatchMesh& mesh, const FitPicture& picture,
     weights.tail(weights.size() - equations.cellRows).setConstant(float(seamWeight));
     std::array<PatchVectors, kMaxChannels> factors;
     int iterations = 0;
+    const Preconditioner preconditioner(equations, weights, progress);
     for (int c = 0; c < mesh.channels(); ++c) {
         ChannelSystem system(equations, choices, weights, c);
-        system.factorize(progress);
-        factors[size_t(c)] = conjugateGradients(system, {}, kTolerance, iterations, progress);
+        factors[size_t(c)] = conjugateGradients(system, preconditioner, {}, kTolerance, iterations, progress);
     }
     setSplines(mesh, equations, choices, factors);
     std::vector<PatchId> solved;

@@ -41,8 +41,11 @@ Image ramp() {
     return paint(kSize, kSize, 3, [](double x, double y, int c) { return .02 * x + .01 * y + .1 * c; });
 }
 
-FitPicture finer(const PatchMesh& mesh, int perSide) {
-    return {mesh, ramp(), enlargedMeans(ramp(), perSide)};
+// Whose halves have fewer pixels than places for centres.
+constexpr double kManyTerms = 70;
+
+FitPicture finer(const PatchMesh& mesh, int perSide, double termsPerPatch = kManyTerms) {
+    return {mesh, termsPerPatch, ramp(), enlargedMeans(ramp(), perSide)};
 }
 
 TEST(FitPicture, SquaresAreCellsAwayFromFeatures) {
@@ -73,6 +76,17 @@ TEST(FitPicture, PixelsNearFeaturesStayWhole) {
     }
 }
 
+TEST(FitPicture, PixelsOfLargePatchesStayWhole) {
+    const Image image = ramp();
+    const FitPicture picture = finer(halves(false), 2, 12);
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const uint32_t first = picture.grid.cellAt(2 * x, 2 * y);
+            EXPECT_EQ(picture.grid.cellAt(2 * x + 1, 2 * y + 1), first) << x << " " << y;
+            EXPECT_EQ(picture.means.plane(2)[first], image.at(x, y, 2));
+        }
+}
+
 TEST(FitPicture, PatchesShareOutEachCellsSamples) {
     const PatchMesh mesh = halves(true);
     const FitPicture picture = finer(mesh, 2);
@@ -98,7 +112,7 @@ TEST(FitPicture, PatchesShareOutEachCellsSamples) {
 
 TEST(FitPicture, SquaresGoWithPatchesAndTerms) {
     const PatchMesh mesh = halves(false);  // 128 px a patch
-    EXPECT_EQ(squaresPerSide(mesh, 70), 2);
+    EXPECT_EQ(squaresPerSide(mesh, kManyTerms), 2);
     EXPECT_EQ(squaresPerSide(mesh, 12), 1);  // few terms have few places
 }
 
@@ -121,7 +135,8 @@ TEST(FitPicture, PartsOfPixelsTellWhatLiesBetween) {
     };
     const Image whole = inBasis(small, ColourBasis::Opponent);
     const Image fine = inBasis(enlargedMeans(small, 3), ColourBasis::Opponent);
-    EXPECT_GT(magnified(fine, FitPicture(mesh, whole, fine)), magnified(whole, FitPicture(whole)) + 1);
+    EXPECT_GT(magnified(fine, FitPicture(mesh, settings.termsPerPatch, whole, fine)),
+              magnified(whole, FitPicture(whole)) + 1);
 }
 
 }  // namespace

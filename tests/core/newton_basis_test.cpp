@@ -37,6 +37,32 @@ TEST(NewtonBasis, APrefixOfTheSitesHasThePrefixOfTheFunctions) {
     for (size_t k = 0; k < 6; ++k) EXPECT_FLOAT_EQ(a[k], b[k]);
 }
 
+TEST(NewtonBasis, SumsOverGroupsAreThoseOfTheValues) {
+    const NewtonBasis basis(kSites);
+    // More groups than are made at once, of 1 to 6 points.
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> uniform(.1F, .8F);
+    std::vector<float> x, y;
+    std::vector<uint32_t> firstPoint{0};
+    for (size_t g = 0; g < 150; ++g) {
+        for (size_t i = 0; i <= random() % 6; ++i) {
+            x.push_back(uniform(random));
+            y.push_back(uniform(random));
+        }
+        firstPoint.push_back(uint32_t(x.size()));
+    }
+    const size_t points = x.size(), stride = 160;
+    std::vector<float> values(kSites.size() * points), sums(kSites.size() * stride);
+    basis.evaluate(x.data(), y.data(), points, values.data(), points);
+    basis.evaluateSums(x.data(), y.data(), firstPoint, sums.data(), stride);
+    for (size_t k = 0; k < kSites.size(); ++k)
+        for (size_t g = 0; g + 1 < firstPoint.size(); ++g) {
+            const float* row = &values[k * points];
+            const double wanted = std::accumulate(row + firstPoint[g], row + firstPoint[g + 1], 0.0);
+            EXPECT_NEAR(sums[k * stride + g], wanted, 1e-5) << k << " " << g;
+        }
+}
+
 TEST(NewtonBasis, DerivativesAreThoseOfTheValues) {
     const NewtonBasis basis(kSites);
     const size_t n = kSites.size();
