@@ -34,16 +34,23 @@ void markNear(const BezierCurve& curve, double reach, FitGrid& grid) {
     }
 }
 
-// Marks the pixels of patches that have one for each place where splines may have a centre.
-void markLargePatches(const PatchMesh& mesh, double termsPerPatch, FitGrid& grid) {
-    const size_t enough = candidateSites(termsPerPatch).size();
+// Of the triangle of the patch's corners, in px.
+double leastHeight(const BezierTriangle& patch) {
+    double longest = 0;
+    for (int s = 0; s < 3; ++s)
+        longest = std::max(longest, glm::distance(patch.corner(s), patch.corner((s + 1) % 3)));
+    return std::abs(cross(patch.corner(1) - patch.corner(0), patch.corner(2) - patch.corner(0))) / longest;
+}
+
+// Marks the pixels of patches with at least one for each row of places where splines may have a centre, along
+// every side. Their number alone does not do: in long patches with enough of them splines swing across.
+void markWidePatches(const PatchMesh& mesh, double termsPerPatch, FitGrid& grid) {
     const ScanConversion scan(mesh, wholePicture(mesh, {1, 1}));
     std::vector<PixelRun> runs;
     for (size_t i = 0; i < scan.patches().size(); ++i) {
-        scan.runs(scan.patches()[i], scan.bounds(i), runs);
-        size_t pixels = 0;
-        for (const PixelRun& run : runs) pixels += size_t(run.end - run.begin);
-        if (pixels < enough) continue;
+        const PatchId p = scan.patches()[i];
+        if (leastHeight(toPixels(mesh.controlPoints(p))) < candidateSteps(termsPerPatch)) continue;
+        scan.runs(p, scan.bounds(i), runs);
         for (const PixelRun& run : runs)
             std::fill_n(grid.whole.begin() + ptrdiff_t(run.row) * grid.width + run.begin, run.end - run.begin,
                         uint8_t{1});
@@ -63,7 +70,7 @@ FitPicture::FitPicture(const PatchMesh& mesh, double termsPerPatch, const Image&
         const double blur = kBlurReach * double(std::max(curve.blurSigma[0], curve.blurSigma[1]));
         markNear(toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e))), std::max(kStepPx, blur), grid);
     });
-    markLargePatches(mesh, termsPerPatch, grid);
+    markWidePatches(mesh, termsPerPatch, grid);
     parallelFor(size_t(grid.height), 16, [&](size_t begin, size_t end) {
         for (int c = 0; c < picture.channels(); ++c)
             for (int y = int(begin); y < int(end); ++y)

@@ -49,7 +49,8 @@ struct FitPicture {
         : grid{picture.width(), picture.height(), 1, {}}, means(std::move(picture)) {}
     // `fine` is `picture` enlarged by a whole factor (between pixels as one expects it there: enlargedMeans
     // of resample.h). Pixels stay whole near features of the mesh, where no enlargement knows on which side
-    // of them it is, and in patches that have as many as splines of termsPerPatch have places for centres.
+    // of them it is, and in patches so wide that for termsPerPatch no two rows of places for centres lie
+    // closer than pixels do.
     FitPicture(const PatchMesh& mesh, double termsPerPatch, const Image& picture, Image fine);
 };
 

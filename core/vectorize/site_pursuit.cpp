@@ -182,11 +182,15 @@ void spend(const PatchMesh& mesh, const std::vector<Offers>& offers, double budg
 
 }  // namespace
 
-std::vector<uint8_t> candidateSites(double termsPerPatch) {
+int candidateSteps(double termsPerPatch) {
     // Few terms do not need places that lie close, and cost a multiple of the time with them.
     constexpr double kFewTerms = 36;
-    const int stride = termsPerPatch <= kFewTerms ? 2 : 1;
     static_assert(kSiteSubdivisions % 2 == 0);
+    return termsPerPatch <= kFewTerms ? kSiteSubdivisions / 2 : kSiteSubdivisions;
+}
+
+std::vector<uint8_t> candidateSites(double termsPerPatch) {
+    const int stride = kSiteSubdivisions / candidateSteps(termsPerPatch);
     std::vector<uint8_t> sites;
     for (int s = 0; s < kCentreSites; ++s) {
         const Barycentric b = barycentricOf(centreSites()[size_t(s)]);

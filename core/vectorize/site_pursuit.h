@@ -23,7 +23,9 @@ struct SiteChoice {
 std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, double termsPerPatch,
                                     const ProgressPart& progress);
 
-// What a search for so many terms a patch chooses from, the corners first.
+// What a search for so many terms a patch chooses from, the corners first: a lattice of candidateSteps a
+// side.
 std::vector<uint8_t> candidateSites(double termsPerPatch);
+int candidateSteps(double termsPerPatch);
 
 }  // namespace tessera

@@ -41,7 +41,7 @@ Image ramp() {
     return paint(kSize, kSize, 3, [](double x, double y, int c) { return .02 * x + .01 * y + .1 * c; });
 }
 
-// Whose halves have fewer pixels than places for centres.
+// With so many the halves, 11.3 px wide, have closer rows of places for centres than of pixels.
 constexpr double kManyTerms = 70;
 
 FitPicture finer(const PatchMesh& mesh, int perSide, double termsPerPatch = kManyTerms) {
@@ -76,7 +76,7 @@ TEST(FitPicture, PixelsNearFeaturesStayWhole) {
     }
 }
 
-TEST(FitPicture, PixelsOfLargePatchesStayWhole) {
+TEST(FitPicture, PixelsOfWidePatchesStayWhole) {
     const Image image = ramp();
     const FitPicture picture = finer(halves(false), 2, 12);
     for (int y = 0; y < kSize; ++y)
