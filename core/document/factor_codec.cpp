@@ -71,10 +71,12 @@ enum Way : size_t { Across, Alone, Detail, kWays };
 constexpr size_t kLevels = 20;
 // Two levels to a doubling, level 0 below 1/16.
 size_t levelOf(double expected) {
-    double bound = .0625;
-    size_t level = 0;
-    for (; level + 1 < kLevels && expected >= bound; ++level) bound *= 1.41421356237309504880;
-    return level;
+    static constexpr auto kBounds = [] {
+        std::array<double, kLevels - 1> bounds{.0625};
+        for (size_t i = 1; i < bounds.size(); ++i) bounds[i] = bounds[i - 1] * 1.41421356237309504880;
+        return bounds;
+    }();
+    return size_t(std::ranges::count_if(kBounds, [&](double bound) { return expected >= bound; }));
 }
 
 constexpr size_t kShares = 17;  // 16ths

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <memory>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/row_products.h"
@@ -139,61 +140,55 @@ SiteBasis::SiteBasis(const SiteLattice& lattice, std::span<const uint8_t> sites,
                      std::span<const uint8_t> counts)
     : mLattice(&lattice),
       mSites(sites.begin(), sites.end()),
-      mAtSites(sites.size() * sites.size()),
+      mAtSites(sites.size() * (sites.size() - 1) / 2),
       mPowers(sites.size()) {
     const size_t n = mSites.size();
     TESSERA_CHECK(n >= kCorners && mSites[0] == 0 && mSites[1] == 1 && mSites[2] == 2);
     std::array<bool, kCentreSites + 1> ends{};  // of groups
     for (const uint8_t count : counts) ends[count] = true;
     ends[n] = true;
-    for (size_t begin = kCorners, end = begin + 1; end <= n; ++end)
-        if (ends[end]) {
-            std::sort(mSites.begin() + ptrdiff_t(begin), mSites.begin() + ptrdiff_t(end));
-            begin = end;
-        }
     chooseOrder(ends);
 }
 
 void SiteBasis::chooseOrder(std::span<const bool> ends) {
     const SiteLattice& lattice = *mLattice;
     const size_t n = mSites.size();
-    // Column i is of site i as they are now; the function of the site that is chosen k-th is row k, and power
-    // is what the rows so far leave of the kernel's diagonal.
-    std::vector<double> rows(n * n), power(n), known(n);
-    std::vector<uint8_t> order(n);
-    std::iota(order.begin(), order.end(), uint8_t{0});
+    // Row k has function k at the sites that come later, as they lie in mSites; power is what the functions
+    // so far leave of the kernel's diagonal there.
+    const auto rows = std::make_unique_for_overwrite<double[]>(n * n);
+    std::vector<double> power(n), known(n);
     for (size_t i = 0; i < n; ++i) {
         for (size_t k = 0; k < kCorners; ++k) rows[k * n + i] = lattice.share(mSites[i], int(k));
         power[i] = lattice.kernel(mSites[i])[mSites[i]];
     }
-    size_t first = 0, end = kCorners;  // columns of the group
+    size_t end = kCorners;  // of the group
     for (size_t k = kCorners; k < n; ++k) {
         if (k == end) {
-            first = k;
             do ++end;
             while (!ends[end]);
         }
         size_t best = k;
         for (size_t i = k + 1; i < end; ++i)
-            if (power[order[i]] > power[order[best]]) best = i;
-        std::rotate(order.begin() + ptrdiff_t(k), order.begin() + ptrdiff_t(best),
-                    order.begin() + ptrdiff_t(best) + 1);
-        const size_t chosen = order[k];
-        const double left = power[chosen];
+            if (power[i] > power[best] || (power[i] == power[best] && mSites[i] < mSites[best])) best = i;
+        const double left = power[best];
         TESSERA_CHECK(left > 0);  // the sites differ
-        double *atSite = &mAtSites[k * n], *row = &rows[k * n];
+        // The site here goes to where the chosen one was.
+        double* atSite = &mAtSites[k * (k - 1) / 2];
         for (size_t j = 0; j < k; ++j) {
-            atSite[j] = rows[j * n + chosen];
+            atSite[j] = std::exchange(rows[j * n + best], rows[j * n + k]);
             known[j] = -(atSite[j] * mPowers[j]);
         }
-        const auto kernel = lattice.kernel(mSites[chosen]);
-        for (size_t i = first; i < n; ++i) row[i] = kernel[mSites[i]];
-        addRows({&known[kCorners], k - kCorners}, &rows[kCorners * n + first], n, {row + first, n - first});
-        finishFunction(row + first, n - first, left, &power[first]);
+        std::swap(mSites[k], mSites[best]);
+        power[best] = power[k];
         mPowers[k] = left;
+
+        const auto kernel = lattice.kernel(mSites[k]);
+        const size_t next = k + 1;
+        double* row = &rows[k * n];
+        for (size_t i = next; i < n; ++i) row[i] = kernel[mSites[i]];
+        addRows({&known[kCorners], k - kCorners}, &rows[kCorners * n + next], n, {row + next, n - next});
+        finishFunction(row + next, n - next, left, power.data() + next);
     }
-    const std::vector<uint8_t> sites = mSites;
-    for (size_t k = 0; k < n; ++k) mSites[k] = sites[order[k]];
 }
 
 std::vector<double> SiteBasis::functionsAt(std::span<const uint8_t> places) const {
@@ -232,19 +227,19 @@ std::vector<double> SiteBasis::values(const PatchSpline& spline, int c, int coun
 std::vector<double> SiteBasis::factors(std::span<const double> values) const {
     std::vector<double> factors(values.begin(), values.end());
     for (size_t i = 1; i < factors.size(); ++i)
-        for (size_t k = 0; k < i; ++k) factors[i] -= factors[k] * mAtSites[i * mSites.size() + k];
+        for (size_t k = 0; k < i; ++k) factors[i] -= factors[k] * before(i)[k];
     return factors;
 }
 
 std::vector<double> SiteBasis::kernelFactors(std::span<const double> factors) const {
-    std::vector<double> left(factors.begin(), factors.end());
-    // Function k is 1 / power times the kernel about its site and a sum of the functions before it.
-    for (size_t k = left.size(); k-- > kCorners;) {
-        left[k] /= mPowers[k];
-        const double* atSite = before(k).data();
-        for (size_t j = kCorners; j < k; ++j) left[j] -= left[k] * mPowers[j] * atSite[j];
+    std::vector<double> all(factors.begin(), factors.end());
+    // Function k times its power is the kernel about its site and a sum of the functions before it.
+    for (size_t k = kCorners; k < all.size(); ++k) all[k] /= mPowers[k];
+    for (size_t k = all.size(); k-- > kCorners;) {
+        const double less = -all[k];
+        addRows({&less, 1}, before(k).data() + kCorners, 0, {&all[kCorners], k - kCorners});
     }
-    return left;
+    return all;
 }
 
 PatchSpline SiteBasis::spline(std::span<const std::vector<double>> kernelFactors) const {

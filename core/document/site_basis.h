@@ -85,7 +85,7 @@ class SiteBasis {
     const SiteLattice& lattice() const { return *mLattice; }
     std::span<const uint8_t> sites() const { return mSites; }
     // The functions before k at site k; function k is 1 there.
-    std::span<const double> before(size_t k) const { return {mAtSites.data() + k * mSites.size(), k}; }
+    std::span<const double> before(size_t k) const { return {mAtSites.data() + k * (k - 1) / 2, k}; }
     // How much function k's factor varies where colours vary as the kernel has it; 0 at the corners.
     double spread(size_t k) const { return std::sqrt(mPowers[k]); }
 
@@ -108,7 +108,7 @@ class SiteBasis {
 
     const SiteLattice* mLattice;
     std::vector<uint8_t> mSites;
-    std::vector<double> mAtSites;  // row k: the functions before k at site k
+    std::vector<double> mAtSites;  // before(k), one after another
     std::vector<double>
         mPowers;  // what the functions before k leave of the kernel at site k; 0 at the corners
 };
