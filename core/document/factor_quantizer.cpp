@@ -14,6 +14,8 @@ namespace {
 constexpr uint8_t kCorners = 3;
 // The trapezoidal rule on the lattice makes the functions larger than they are; measured.
 constexpr double kTrueShare = .93;
+// Up to so many factors their norms are soon known, and cells foretell them badly.
+constexpr size_t kFewFactors = 24;
 constexpr double kLeastArea = 1.0 / 16, kLargestArea = 16;
 
 // Whether the spline is what its values at the sites make it: its side conditions hold up to what the floats
@@ -46,7 +48,7 @@ bool hasFactors(const PatchSpline& spline, int channels, double step) {
 class FactorRounding {
   public:
     FactorRounding(const FactorBasis& basis, const FactorColour& colour) : mBasis(basis) {
-        const SiteProducts products(basis.basis());
+        const SiteProducts products(basis.basis(), size_t(basis.basis().size()));
         for (size_t c = 0; c < size_t(basis.channels()); ++c) {
             const auto same = std::find(colour.counts.begin(), colour.counts.begin() + c, colour.counts[c]);
             const auto before = size_t(same - colour.counts.begin());
@@ -114,16 +116,17 @@ double factorStep(double squaredError, double factors) {
 
 FactorBasis::FactorBasis(uint32_t version, const FactorColour& colour, int channels, double step, double area)
     : mBasis(SiteLattice::ofVersion(version), colour.sites, colour.counts) {
-    const double scaled = step / std::sqrt(area);
-    std::optional<SiteProducts> products;
-    if (version < kForetoldNormsVersion) {
-        products.emplace(mBasis);
-        mOnBorder = mBasis.functionsAt(mBasis.lattice().border());
-    }
-    for (size_t c = 0; c < size_t(channels); ++c) {
+    const bool foretells = version >= kForetoldNormsVersion;
+    if (!foretells) mOnBorder = mBasis.functionsAt(mBasis.lattice().border(), size_t(mBasis.size()));
+    const size_t few = foretells ? kFewFactors : kCentreSites;
+    size_t most = 0;
+    for (const uint8_t count : std::span(colour.counts).first(size_t(channels)))
+        if (count <= few) most = std::max<size_t>(most, count);
+    const SiteProducts products(mBasis, most);
+    for (const uint8_t count : std::span(colour.counts).first(size_t(channels))) {
         std::vector<double> steps =
-            products ? products->norms(colour.counts[c]).diagonal() : foretoldNorms(mBasis, colour.counts[c]);
-        for (double& s : steps) s = scaled / s;
+            count <= few ? products.norms(count).diagonal() : foretoldNorms(mBasis, count);
+        for (double& s : steps) s = step / std::sqrt(area) / s;
         mSteps.push_back(std::move(steps));
     }
 }

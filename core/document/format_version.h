@@ -6,7 +6,7 @@
 namespace tessera {
 
 constexpr uint32_t kFormatVersion = 4;
-// From this version on a factor's step follows from where the sites lie alone, not from the norm itself.
+// From this version on the step of one of many factors follows from where the sites lie, not from its norm.
 constexpr uint32_t kForetoldNormsVersion = 4;
 
 }  // namespace tessera

@@ -79,6 +79,7 @@ SiteLattice::SiteLattice(int subdivisions) : mSubdivisions(subdivisions) {
         else if (p.b == 0)
             mBorder[size_t(3 * n - p.c)] = uint8_t(s);
         const int sides = (p.b == 0) + (p.c == 0) + (p.b + p.c == n);
+        mParts.push_back(sides == 0 ? 6 : sides == 1 ? 3 : 1);
         mWeight.push_back((sides == 0 ? 1 : sides == 1 ? .5 : 1.0 / 6) * 2 / (n * n));
     }
     fillKernels();
@@ -191,21 +192,20 @@ void SiteBasis::chooseOrder(std::span<const bool> ends) {
     }
 }
 
-std::vector<double> SiteBasis::functionsAt(std::span<const uint8_t> places) const {
-    const size_t count = places.size();
-    std::vector<double> functions(mSites.size() * count), known(mSites.size());
-    for (size_t k = 0; k < mSites.size(); ++k) {
-        double* row = &functions[k * count];
+std::vector<double> SiteBasis::functionsAt(std::span<const uint8_t> places, size_t count) const {
+    const size_t length = places.size();
+    std::vector<double> functions(count * length), known(count);
+    for (size_t k = 0; k < count; ++k) {
+        double* row = &functions[k * length];
         if (k < kCorners) {
-            for (size_t i = 0; i < count; ++i) row[i] = mLattice->share(places[i], int(k));
+            for (size_t i = 0; i < length; ++i) row[i] = mLattice->share(places[i], int(k));
             continue;
         }
         const auto kernel = mLattice->kernel(mSites[k]);
-        const double left = mPowers[k];
-        for (size_t i = 0; i < count; ++i) row[i] = kernel[places[i]];
+        for (size_t i = 0; i < length; ++i) row[i] = kernel[places[i]];
         for (size_t j = kCorners; j < k; ++j) known[j] = -(before(k)[j] * mPowers[j]);
-        addRows({&known[kCorners], k - kCorners}, &functions[kCorners * count], count, {row, count});
-        for (size_t i = 0; i < count; ++i) row[i] /= left;
+        addRows({&known[kCorners], k - kCorners}, &functions[kCorners * length], length, {row, length});
+        for (size_t i = 0; i < length; ++i) row[i] /= mPowers[k];
     }
     return functions;
 }

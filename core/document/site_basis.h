@@ -63,6 +63,8 @@ class SiteLattice {
     double cornerKernel(size_t site, size_t corner) const { return mCornerKernel[3 * site + corner]; }
     // Of a site in means over the domain: the trapezoidal rule.
     double weight(size_t site) const { return mWeight[site]; }
+    // The same in whole numbers: how many of the six triangles that may meet in a place the domain has.
+    int parts(size_t site) const { return mParts[site]; }
 
   private:
     void fillKernels();
@@ -70,7 +72,7 @@ class SiteLattice {
     int mSubdivisions;
     std::vector<SitePlace> mPlaces;
     std::vector<uint8_t> mBorder;
-    std::vector<int> mSquaredDistances;
+    std::vector<int> mParts, mSquaredDistances;
     std::vector<double> mPhi, mKernel, mBorderFunctions, mCornerKernel, mWeight;
 };
 
@@ -89,8 +91,8 @@ class SiteBasis {
     // How much function k's factor varies where colours vary as the kernel has it; 0 at the corners.
     double spread(size_t k) const { return std::sqrt(mPowers[k]); }
 
-    // The functions, row by row, at some places of the lattice.
-    std::vector<double> functionsAt(std::span<const uint8_t> places) const;
+    // The first `count` functions, row by row, at some places of the lattice.
+    std::vector<double> functionsAt(std::span<const uint8_t> places, size_t count) const;
 
     // Channel c of a spline over the same sites, in whatever order, at the first `count` sites.
     std::vector<double> values(const PatchSpline& spline, int c, int count) const;

@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kCorners = 3;
 // Of norms to what cells foretell: at the corners, at other sites of the border, and inside. Measured over
 // the patches of photographs.
-constexpr double kAtCorner = .53, kOnBorder = .79, kInside = .95;
+constexpr double kAtCorner = .54, kOnBorder = .77, kInside = .91;
 
 std::vector<uint8_t> allPlaces(const SiteLattice& lattice) {
     std::vector<uint8_t> places(lattice.size());
@@ -25,21 +25,47 @@ std::vector<uint8_t> allPlaces(const SiteLattice& lattice) {
     return places;
 }
 
-// Which of the sites is nearest to each place, the first among equals: in the low byte of what is the least
-// so far.
+using Places = std::array<int, kCentreSites>;
+
 TESSERA_VECTOR_CLONES
-void takeNearer(const int* squaredDistances, int k, int* __restrict nearest, size_t count) {
-    for (size_t s = 0; s < count; ++s) nearest[s] = std::min(nearest[s], squaredDistances[s] * 256 + k);
+void takeNearer(const int* distances, size_t count, int* __restrict nearest) {
+    for (size_t s = 0; s < count; ++s) nearest[s] = std::min(nearest[s], distances[s]);
 }
 
-// The share of the domain that is nearest to each of the sites.
+TESSERA_VECTOR_CLONES
+void countEqual(const int* distances, const int* nearest, size_t count, int* __restrict equals) {
+    for (size_t s = 0; s < count; ++s) equals[s] += distances[s] == nearest[s] ? 1 : 0;
+}
+
+TESSERA_VECTOR_CLONES
+int sumWhereEqual(const int* distances, const int* nearest, const int* shares, size_t count) {
+    int sum = 0;
+    for (size_t s = 0; s < count; ++s) sum += distances[s] == nearest[s] ? shares[s] : 0;
+    return sum;
+}
+
+// The share of the domain that is nearest to each of the sites. Those that are equally near to a place share
+// it, in whole parts so that the order of sums does not matter.
 std::vector<double> cells(const SiteLattice& lattice, std::span<const uint8_t> sites) {
-    std::array<int, kCentreSites> nearest;
+    constexpr int kFine = 60;
+    const size_t places = lattice.size();
+    Places nearest, owners{}, shares;
     nearest.fill(std::numeric_limits<int>::max());
-    for (size_t k = 0; k < sites.size(); ++k)
-        takeNearer(lattice.squaredDistances(sites[k]).data(), int(k), nearest.data(), lattice.size());
-    std::vector<double> areas(sites.size(), 0);
-    for (size_t s = 0; s < lattice.size(); ++s) areas[size_t(nearest[s] & 255)] += lattice.weight(s);
+    for (const uint8_t site : sites)
+        takeNearer(lattice.squaredDistances(site).data(), places, nearest.data());
+    for (const uint8_t site : sites)
+        countEqual(lattice.squaredDistances(site).data(), nearest.data(), places, owners.data());
+    int whole = 0;
+    for (size_t s = 0; s < places; ++s) {
+        shares[s] = kFine * lattice.parts(s) / owners[s];
+        whole += kFine * lattice.parts(s);
+    }
+    std::vector<double> areas;
+    areas.reserve(sites.size());
+    for (const uint8_t site : sites)
+        areas.push_back(double(sumWhereEqual(lattice.squaredDistances(site).data(), nearest.data(),
+                                             shares.data(), places)) /
+                        whole);
     return areas;
 }
 
@@ -51,9 +77,9 @@ std::vector<double> SiteNorms::diagonal() const {
     return all;
 }
 
-SiteProducts::SiteProducts(const SiteBasis& basis) : mSize(size_t(basis.size())) {
+SiteProducts::SiteProducts(const SiteBasis& basis, size_t count) : mSize(count) {
     const SiteLattice& lattice = basis.lattice();
-    const std::vector<double> functions = basis.functionsAt(allPlaces(lattice));
+    const std::vector<double> functions = basis.functionsAt(allPlaces(lattice), count);
     std::vector<double> weighted(functions);
     for (size_t i = 0; i < weighted.size(); ++i) weighted[i] *= lattice.weight(i % lattice.size());
     mProducts = lowerProducts(weighted, functions, mSize, lattice.size());

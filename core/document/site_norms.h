@@ -20,19 +20,19 @@ struct SiteNorms {
     std::vector<double> diagonal() const;
 };
 
-// The functions' mean products, by the trapezoidal rule on the lattice: what norms come from. Writing takes
-// them, and reading versions before 4.
+// The mean products of the first `count` functions, by the trapezoidal rule on the lattice: what norms come
+// from.
 class SiteProducts {
   public:
-    explicit SiteProducts(const SiteBasis& basis);
-    SiteNorms norms(size_t n) const;  // of the first n functions
+    SiteProducts(const SiteBasis& basis, size_t count);
+    SiteNorms norms(size_t n) const;  // of the first n <= count functions
 
   private:
     size_t mSize;
     std::vector<double> mProducts;  // row by row
 };
 
-// What T(k, k) is about, from where the first n sites lie alone.
+// What T(k, k) is about where there are many sites, from where the first n of them lie alone.
 std::vector<double> foretoldNorms(const SiteBasis& basis, size_t n);
 
 }  // namespace tessera
