@@ -8,10 +8,9 @@
 
 #include "core/base/result.h"
 #include "core/document/document.h"
+#include "core/document/format_version.h"
 
 namespace tessera {
-
-constexpr uint32_t kFormatVersion = 3;
 
 struct ChunkSize {
     std::string tag;

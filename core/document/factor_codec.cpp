@@ -71,10 +71,12 @@ enum Way : size_t { Across, Alone, Detail, kWays };
 constexpr size_t kLevels = 20;
 // Two levels to a doubling, level 0 below 1/16.
 size_t levelOf(double expected) {
-    double bound = .0625;
-    size_t level = 0;
-    for (; level + 1 < kLevels && expected >= bound; ++level) bound *= 1.41421356237309504880;
-    return level;
+    static constexpr auto kBounds = [] {
+        std::array<double, kLevels - 1> bounds{.0625};
+        for (size_t i = 1; i < bounds.size(); ++i) bounds[i] = bounds[i - 1] * 1.41421356237309504880;
+        return bounds;
+    }();
+    return size_t(std::ranges::count_if(kBounds, [&](double bound) { return expected >= bound; }));
 }
 
 constexpr size_t kShares = 17;  // 16ths
@@ -106,13 +108,16 @@ class FactorCoder {
         : mCoder(coder),
           mStream(stream),
           mMesh(stream.mesh),
-          mLattice(stream.lattice),
-          mSubdivisions(size_t(stream.lattice.subdivisions())),
-          mBorder(stream.lattice.border()),
-          mEarlierPlaces(earlierPlaces(stream.lattice)),
+          mLattice(SiteLattice::ofVersion(stream.version)),
+          mSubdivisions(size_t(mLattice.subdivisions())),
+          mBorder(mLattice.border()),
+          mBorderPlaces(mLattice.size(), uint8_t(mBorder.size())),
+          mEarlierPlaces(earlierPlaces(mLattice)),
           mColours(colours),
           mShown(colours.size()),
-          mBorderTaken(colours.size(), 0) {}
+          mBorderTaken(colours.size(), 0) {
+        for (size_t i = 0; i < mBorder.size(); ++i) mBorderPlaces[mBorder[i]] = uint8_t(i);
+    }
 
     std::string codeLayouts(size_t streamBytes) {
         size_t factors = 0;
@@ -144,7 +149,7 @@ class FactorCoder {
     std::optional<FactorBasis> prepare(uint32_t f) {
         FactorColour& colour = mColours[f];
         if (colour.exact) return {};
-        FactorBasis basis(mLattice, colour, mStream.channels, mStream.step, mStream.areas[f]);
+        FactorBasis basis(mStream.version, colour, mStream.channels, mStream.step, mStream.areas[f]);
         for (size_t c = 0; c < channels(); ++c) colour.factors[c].resize(colour.counts[c]);
         return basis;
     }
@@ -222,7 +227,8 @@ class FactorCoder {
             const size_t places = mLattice.size() - s;
             bool taken = groups[s] != 0;
             if (total < places)
-                mCoder.bit(mModels->taken[shareOf(total, places)][ringOf(s)][around(groups, s)][beyond[s]],
+                mCoder.bit(mModels->taken[shareOf(total, places)][size_t(std::min(mLattice.ring(s), 2))]
+                                         [around(groups, s)][beyond[s]],
                            taken);
             else
                 taken = true;
@@ -251,12 +257,6 @@ class FactorCoder {
             total -= left[g];
         }
         return left.size() - 1;
-    }
-
-    size_t ringOf(size_t site) const {
-        const SitePlace p = mLattice.place(site);
-        const int ring = std::min({p.b, p.c, mLattice.subdivisions() - p.b - p.c});
-        return size_t(std::min(ring, 2));
     }
 
     // How many of the places beside it, of those before it, are taken.
@@ -346,11 +346,11 @@ class FactorCoder {
         return {};
     }
 
-    // What the earlier neighbours tell of channel c of a patch: colours on its border by site, where no
-    // feature lies between; a colour; activities.
+    // What the earlier neighbours tell of channel c of a patch: colours around its border, where no feature
+    // lies between; a colour; activities.
     struct Told {
-        std::array<double, kCentreSites> value{};
-        std::array<uint8_t, kCentreSites> count{};
+        std::array<double, kMostBorderSites> value{};
+        std::array<uint8_t, kMostBorderSites> count{};
         double any = 0, detail = 0, seam = 0;
     };
 
@@ -366,16 +366,16 @@ class FactorCoder {
                     double(shown.border[c][((theirs + 1) * mSubdivisions - i) % mBorder.size()]);
                 if (i == 0) told.any += value;
                 if (feature) continue;
-                const uint8_t site = mBorder[(s * mSubdivisions + i) % mBorder.size()];
-                told.value[site] += value;
-                ++told.count[site];
+                const size_t place = (s * mSubdivisions + i) % mBorder.size();
+                told.value[place] += value;
+                ++told.count[place];
             }
             told.detail += shown.detail[c];
             told.seam += shown.seam[c];
             ++neighbours;
         });
-        for (size_t s = 0; s < mLattice.size(); ++s)
-            if (told.count[s] > 1) told.value[s] /= told.count[s];
+        for (size_t i = 0; i < mBorder.size(); ++i)
+            if (told.count[i] > 1) told.value[i] /= told.count[i];
         if (neighbours == 0) return {{}, {}, 0, mLast[c].detail, mLast[c].seam};
         told.any /= neighbours;
         told.detail /= neighbours;
@@ -388,17 +388,17 @@ class FactorCoder {
         std::vector<int32_t>& factors = mColours[f].factors[c];
         const Told told = tell(f, c);
         double detail = told.detail, seam = told.seam;
-        std::array<double, kCentreSites> sum{};  // the spline of the factors so far
+        std::array<double, kCentreSites> values;  // of the factors so far
         double corners = 0;
         for (size_t k = 0; k < factors.size(); ++k) {
-            const size_t site = basis.sites()[k];
-            const double step = factorBasis.step(int(c), int(k));
-            const bool across = told.count[site] != 0;
+            const size_t place = mBorderPlaces[basis.sites()[k]];
+            const double step = factorBasis.steps(c)[k];
+            const bool across = place < mBorder.size() && told.count[place] != 0;
             const Way way = across ? Across : k < kCorners ? Alone : Detail;
-            const double foreseen = across         ? told.value[site] - sum[site]
+            const double foreseen = across         ? told.value[place] - sumBefore(basis, k, values.data())
                                     : k < kCorners ? (k == 0 ? told.any : corners / double(k))
                                                    : 0;
-            const double spread = basis.spread(int(k));
+            const double spread = basis.spread(k);
             const double scale = way == Across  ? seam
                                  : way == Alone ? detail * kCornerSpread
                                                 : detail * spread;
@@ -412,18 +412,27 @@ class FactorCoder {
                 factors[k] = int32_t(factor);
             }
             const double value = factors[k] * step;
+            values[k] = value;
             if (k < kCorners) corners += value;
-            addRows({&value, 1}, basis.function(int(k)).data(), 0, {sum.data(), mLattice.size()});
             const double miss = std::max(std::abs(value - foreseen), .25 * step);
             if (way == Across) seam += (miss - seam) * kRate;
             if (way == Detail) detail += (miss / spread - detail) * kRate;
         }
         Shown& shown = mShown[f];
-        for (size_t i = 0; i < mBorder.size(); ++i) shown.border[c][i] = float(sum[mBorder[i]]);
+        std::array<double, kMostBorderSites> border;
+        factorBasis.evaluateBorder({values.data(), factors.size()}, {border.data(), mBorder.size()});
+        std::copy_n(border.begin(), mBorder.size(), shown.border[c].begin());
         shown.detail[c] = detail;
         shown.seam[c] = seam;
         mLast[c] = {detail, seam};
         return {};
+    }
+
+    // At site k the spline of the factors before it.
+    static double sumBefore(const SiteBasis& basis, size_t k, const double* values) {
+        double sum = 0;
+        for (const double function : basis.before(k)) sum += *values++ * function;
+        return sum;
     }
 
     static int64_t nearest(double x) { return int64_t(std::floor(std::clamp(x, -1e9, 1e9) + .5)); }
@@ -442,6 +451,7 @@ class FactorCoder {
     const SiteLattice& mLattice;
     size_t mSubdivisions;
     std::span<const uint8_t> mBorder;
+    std::vector<uint8_t> mBorderPlaces;  // where on mBorder a site is; its size for those inside
     EarlierPlaces mEarlierPlaces;
     std::vector<FactorColour>& mColours;
     std::vector<Shown> mShown;

@@ -1,4 +1,4 @@
-// Colour splines on chosen sites to and from a range-coded stream: the method of versions 2 and 3.
+// Colour splines on chosen sites to and from a range-coded stream: the method from version 2 on.
 //
 // A channel of n terms is stored as its n Newton factors (newton_basis.h), which fall off quickly and of
 // which a smaller number makes a coarser spline. Each factor has a step of its own, so that the mean squared
@@ -8,10 +8,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/document/file_mesh.h"
+#include "core/document/format_version.h"
 #include "core/document/geometry_codec.h"
 #include "core/document/range_coder.h"
 #include "core/document/site_basis.h"
@@ -34,28 +36,26 @@ std::vector<double> relativeAreas(const FileMesh& mesh, const FileGeometry& geom
 // over the channels, where patches have `factors` factors on the average.
 double factorStep(double squaredError, double factors);
 
-// What the factors of a patch are measured in.
+// What the factors of a patch are measured in, and what they say.
 class FactorBasis {
   public:
-    // Of the colour's counts and sites, which may be in any order that a SiteBasis takes. Keeps a reference
-    // to the lattice.
-    FactorBasis(const SiteLattice& lattice, const FactorColour& colour, int channels, double step,
-                double area);
+    // Of the colour's counts and sites, which may be in any order that a SiteBasis takes.
+    FactorBasis(uint32_t version, const FactorColour& colour, int channels, double step, double area);
 
     const SiteBasis& basis() const { return mBasis; }
-    // In colour units.
-    double step(int c, int k) const { return mScaled / mNorms[size_t(c)].at(k, k); }
+    int channels() const { return int(mSteps.size()); }
+    // Of channel c's factors, in colour units.
+    std::span<const double> steps(size_t c) const { return mSteps[c]; }
+    std::vector<double> values(size_t c, std::span<const int32_t> factors) const;
 
-    // The factors of a spline, rounded, or false where they are too large. The spline's sites may be in
-    // another order.
-    bool quantize(const PatchSpline& spline, std::array<std::vector<int32_t>, kMaxChannels>& factors) const;
+    // The spline of these values around the lattice's border.
+    void evaluateBorder(std::span<const double> values, std::span<double> out) const;
     PatchSpline spline(const std::array<std::vector<int32_t>, kMaxChannels>& factors) const;
 
   private:
-    int mChannels;
-    double mScaled;
     SiteBasis mBasis;
-    std::array<SiteBasis::Norms, kMaxChannels> mNorms;
+    std::vector<std::vector<double>> mSteps;
+    std::vector<double> mOnBorder;  // before version 4: the functions there
 };
 
 // A spline's factors at the steps that `step` and the patch's relative area give; exact where it has centres
@@ -63,15 +63,15 @@ class FactorBasis {
 FactorColour quantizedFactors(const PatchSpline& spline, int channels, double step, double area);
 
 // Both directions return what is wrong, or empty; `streamBytes` is the length of the stream, by which the
-// number of factors is bounded. The encoder takes the current lattice alone. The decoder sets the splines
-// too, whose sites are of the stream's lattice.
+// number of factors is bounded. The encoder takes the current version alone. The decoder sets the splines
+// too, whose sites are of the version's lattice.
 struct FactorStream {
     const FileMesh& mesh;
     const std::vector<bool>& featureEdges;
     const std::vector<double>& areas;
     int channels = 3;
     double step = 0;
-    const SiteLattice& lattice = SiteLattice::current();
+    uint32_t version = kFormatVersion;
 };
 std::string encodeFactors(RangeEncoder& coder, const FactorStream& stream,
                           std::vector<FactorColour>& colours);

@@ -1,8 +1,11 @@
 // The rounding of splines on sites to factors; see factor_codec.h.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "core/base/row_products.h"
 #include "core/document/factor_codec.h"
+#include "core/document/site_norms.h"
 
 namespace tessera {
 
@@ -11,6 +14,8 @@ namespace {
 constexpr uint8_t kCorners = 3;
 // The trapezoidal rule on the lattice makes the functions larger than they are; measured.
 constexpr double kTrueShare = .93;
+// Up to so many factors their norms are soon known, and cells foretell them badly.
+constexpr size_t kFewFactors = 24;
 constexpr double kLeastArea = 1.0 / 16, kLargestArea = 16;
 
 // Whether the spline is what its values at the sites make it: its side conditions hold up to what the floats
@@ -39,22 +44,47 @@ bool hasFactors(const PatchSpline& spline, int channels, double step) {
     return true;
 }
 
-// Rounds from the first factor on; what it costs is made good by the later ones.
-bool roundFactors(const std::vector<double>& factors, const SiteBasis::Norms& norms, double scaled,
-                  std::vector<int32_t>& out) {
-    const auto n = factors.size();
-    out.resize(n);
-    std::vector<double> errors(n, 0);
-    for (size_t k = 0; k < n; ++k) {
-        const double norm = norms.at(int(k), int(k)), step = scaled / norm;
-        double wanted = factors[k];
-        for (size_t j = 0; j < k; ++j) wanted += norms.at(int(k), int(j)) / norm * errors[j];
-        if (!(std::abs(wanted / step) < 1e8)) return false;
-        out[k] = int32_t(std::lround(wanted / step));
-        errors[k] = factors[k] - out[k] * step;
+// Rounds splines over a patch's sites to factors.
+class FactorRounding {
+  public:
+    FactorRounding(const FactorBasis& basis, const FactorColour& colour) : mBasis(basis) {
+        const SiteProducts products(basis.basis(), size_t(basis.basis().size()));
+        for (size_t c = 0; c < size_t(basis.channels()); ++c) {
+            const auto same = std::find(colour.counts.begin(), colour.counts.begin() + c, colour.counts[c]);
+            const auto before = size_t(same - colour.counts.begin());
+            mNorms.push_back(before < c ? mNorms[before] : products.norms(colour.counts[c]));
+        }
     }
-    return true;
-}
+
+    // False where the factors are too large. The spline's sites may be in another order.
+    bool round(const PatchSpline& spline, std::array<std::vector<int32_t>, kMaxChannels>& out) const {
+        for (size_t c = 0; c < mNorms.size(); ++c) {
+            const auto values = mBasis.basis().values(spline, int(c), int(mNorms[c].n));
+            if (!roundChannel(mBasis.basis().factors(values), c, out[c])) return false;
+        }
+        return true;
+    }
+
+  private:
+    // From the first factor on; what it costs is made good by the later ones.
+    bool roundChannel(const std::vector<double>& factors, size_t c, std::vector<int32_t>& out) const {
+        const SiteNorms& norms = mNorms[c];
+        out.resize(norms.n);
+        std::vector<double> errors(norms.n, 0);
+        for (size_t k = 0; k < norms.n; ++k) {
+            const double step = mBasis.steps(c)[k];
+            double wanted = factors[k];
+            for (size_t j = 0; j < k; ++j) wanted += norms.at(k, j) / norms.at(k, k) * errors[j];
+            if (!(std::abs(wanted / step) < 1e8)) return false;
+            out[k] = int32_t(std::lround(wanted / step));
+            errors[k] = factors[k] - out[k] * step;
+        }
+        return true;
+    }
+
+    const FactorBasis& mBasis;
+    std::vector<SiteNorms> mNorms;
+};
 
 }  // namespace
 
@@ -84,33 +114,46 @@ double factorStep(double squaredError, double factors) {
     return std::sqrt(12 * squaredError / (kTrueShare * factors));
 }
 
-FactorBasis::FactorBasis(const SiteLattice& lattice, const FactorColour& colour, int channels, double step,
-                         double area)
-    : mChannels(channels), mScaled(step / std::sqrt(area)), mBasis(lattice, colour.sites, colour.counts) {
-    for (size_t c = 0; c < size_t(channels); ++c) {
-        const auto same = std::find(colour.counts.begin(), colour.counts.begin() + c, colour.counts[c]);
-        const auto before = size_t(same - colour.counts.begin());
-        mNorms[c] = before < c ? mNorms[before] : mBasis.norms(colour.counts[c]);
+FactorBasis::FactorBasis(uint32_t version, const FactorColour& colour, int channels, double step, double area)
+    : mBasis(SiteLattice::ofVersion(version), colour.sites, colour.counts) {
+    const bool foretells = version >= kForetoldNormsVersion;
+    if (!foretells) mOnBorder = mBasis.functionsAt(mBasis.lattice().border(), size_t(mBasis.size()));
+    const size_t few = foretells ? kFewFactors : kCentreSites;
+    size_t most = 0;
+    for (const uint8_t count : std::span(colour.counts).first(size_t(channels)))
+        if (count <= few) most = std::max<size_t>(most, count);
+    const SiteProducts products(mBasis, most);
+    for (const uint8_t count : std::span(colour.counts).first(size_t(channels))) {
+        std::vector<double> steps =
+            count <= few ? products.norms(count).diagonal() : foretoldNorms(mBasis, count);
+        for (double& s : steps) s = step / std::sqrt(area) / s;
+        mSteps.push_back(std::move(steps));
     }
 }
 
-bool FactorBasis::quantize(const PatchSpline& spline,
-                           std::array<std::vector<int32_t>, kMaxChannels>& factors) const {
-    for (int c = 0; c < mChannels; ++c) {
-        const SiteBasis::Norms& norms = mNorms[size_t(c)];
-        const auto values = mBasis.values(spline, c, norms.n);
-        if (!roundFactors(mBasis.factors(values), norms, mScaled, factors[size_t(c)])) return false;
+std::vector<double> FactorBasis::values(size_t c, std::span<const int32_t> factors) const {
+    std::vector<double> values(factors.size());
+    for (size_t k = 0; k < values.size(); ++k) values[k] = factors[k] * mSteps[c][k];
+    return values;
+}
+
+void FactorBasis::evaluateBorder(std::span<const double> values, std::span<double> out) const {
+    std::ranges::fill(out, 0);
+    if (!mOnBorder.empty()) {
+        addRows(values, mOnBorder.data(), out.size(), out);
+        return;
     }
-    return true;
+    const SiteLattice& lattice = mBasis.lattice();
+    const std::vector<double> factors = mBasis.kernelFactors(values);
+    for (size_t k = 0; k < factors.size(); ++k)
+        addRows({&factors[k], 1}, lattice.borderFunction(mBasis.sites()[k]).data(), 0, out);
 }
 
 PatchSpline FactorBasis::spline(const std::array<std::vector<int32_t>, kMaxChannels>& factors) const {
-    std::array<std::vector<double>, kMaxChannels> values;
-    for (size_t c = 0; c < size_t(mChannels); ++c) {
-        for (size_t k = 0; k < factors[c].size(); ++k)
-            values[c].push_back(factors[c][k] * step(int(c), int(k)));
-    }
-    return mBasis.spline({values.data(), size_t(mChannels)});
+    std::vector<std::vector<double>> kernelFactors;
+    for (size_t c = 0; c < mSteps.size(); ++c)
+        kernelFactors.push_back(mBasis.kernelFactors(values(c, factors[c])));
+    return mBasis.spline(kernelFactors);
 }
 
 FactorColour quantizedFactors(const PatchSpline& spline, int channels, double step, double area) {
@@ -123,13 +166,14 @@ FactorColour quantizedFactors(const PatchSpline& spline, int channels, double st
         }
         colour.sites = {0, 1, 2};
         if (most > kCorners) colour.sites.assign(spline.sites.begin(), spline.sites.begin() + most);
-        const FactorBasis basis(SiteLattice::current(), colour, channels, step, area);
+        const FactorBasis basis(kFormatVersion, colour, channels, step, area);
+        const FactorRounding rounding(basis, colour);
         // Factors only where what comes back from them gives them again: by that, and by nothing else, is
         // storing a second time known to give the same bytes.
-        if (basis.quantize(spline, colour.factors)) {
+        if (rounding.round(spline, colour.factors)) {
             const PatchSpline back = basis.spline(colour.factors);
             std::array<std::vector<int32_t>, kMaxChannels> again;
-            if (hasFactors(back, channels, step) && basis.quantize(back, again) && again == colour.factors)
+            if (hasFactors(back, channels, step) && rounding.round(back, again) && again == colour.factors)
                 return colour;
         }
     }

@@ -216,7 +216,7 @@ tl::expected<DecodedColours, std::string> decodeColourChunk(std::span<const uint
         const std::vector<double> areas = relativeAreas(file, g);
         const std::vector<bool> features = featuresOf(g);
         const SiteLattice& lattice = SiteLattice::ofVersion(version);
-        wrong = decodeFactors(coder, {file, features, areas, channels, colours.step, lattice}, stream.size(),
+        wrong = decodeFactors(coder, {file, features, areas, channels, colours.step, version}, stream.size(),
                               colours.splines);
         for (size_t i = 0; i < colours.splines.size() && wrong.empty(); ++i)
             wrong = lattice.adopt(colours.splines[i]);

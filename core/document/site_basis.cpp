@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/row_products.h"
@@ -26,21 +28,25 @@ double portableLog(int m) {
     return e * kLog2 + 2 * z * sum;
 }
 
+int squaredDistance(SitePlace p, SitePlace q) {
+    const int b = p.b - q.b, c = p.c - q.c;
+    return b * b + b * c + c * c;
+}
+
 // phi of the distance between two places.
 double latticeKernel(SitePlace p, SitePlace q, int subdivisions) {
-    const int b = p.b - q.b, c = p.c - q.c, squared = b * b + b * c + c * c;
-    const int unit = subdivisions * subdivisions;
+    const int squared = squaredDistance(p, q), unit = subdivisions * subdivisions;
     if (squared == 0) return 0;
     return double(squared) / unit * (portableLog(squared) - portableLog(unit)) / 2;
 }
 
-// The function whose multiple by `left` is `row`, and what it leaves of the kernel's diagonal.
+// Divides what is a function's multiple by `left`, and takes what it leaves of the kernel's diagonal.
 TESSERA_VECTOR_CLONES
-void finishFunction(const double* row, size_t count, double left, double* __restrict function,
-                    double* __restrict power) {
-    for (size_t s = 0; s < count; ++s) {
-        function[s] = row[s] / left;
-        power[s] -= function[s] * row[s];
+void finishFunction(double* __restrict row, size_t count, double left, double* __restrict power) {
+    for (size_t i = 0; i < count; ++i) {
+        const double function = row[i] / left;
+        power[i] -= function * row[i];
+        row[i] = function;
     }
 }
 
@@ -73,6 +79,7 @@ SiteLattice::SiteLattice(int subdivisions) : mSubdivisions(subdivisions) {
         else if (p.b == 0)
             mBorder[size_t(3 * n - p.c)] = uint8_t(s);
         const int sides = (p.b == 0) + (p.c == 0) + (p.b + p.c == n);
+        mParts.push_back(sides == 0 ? 6 : sides == 1 ? 3 : 1);
         mWeight.push_back((sides == 0 ? 1 : sides == 1 ? .5 : 1.0 / 6) * 2 / (n * n));
     }
     fillKernels();
@@ -91,9 +98,12 @@ void SiteLattice::fillKernels() {
                 for (int r = 0; r < kCorners; ++r)
                     sum += share(i, q) * share(j, r) * phiOf(size_t(q), size_t(r));
             }
+            mSquaredDistances.push_back(squaredDistance(mPlaces[i], mPlaces[j]));
             mPhi.push_back(phiOf(i, j));
             mKernel.push_back(i < kCorners || j < kCorners ? 0 : sum);
         }
+        for (const uint8_t place : mBorder)
+            mBorderFunctions.push_back(i < kCorners ? share(place, int(i)) : kernel(i)[place]);
         for (size_t q = 0; q < kCorners; ++q) {
             double sum = phiOf(q, i);
             for (int r = 0; r < kCorners; ++r) sum -= share(i, r) * phiOf(q, size_t(r));
@@ -106,6 +116,11 @@ double SiteLattice::share(size_t site, int corner) const {
     const SitePlace p = mPlaces[site];
     const int steps = corner == 0 ? mSubdivisions - p.b - p.c : corner == 1 ? p.b : p.c;
     return double(steps) / mSubdivisions;
+}
+
+int SiteLattice::ring(size_t site) const {
+    const SitePlace p = mPlaces[site];
+    return std::min({p.b, p.c, mSubdivisions - p.b - p.c});
 }
 
 glm::dvec2 SiteLattice::point(size_t site) const {
@@ -126,70 +141,73 @@ SiteBasis::SiteBasis(const SiteLattice& lattice, std::span<const uint8_t> sites,
                      std::span<const uint8_t> counts)
     : mLattice(&lattice),
       mSites(sites.begin(), sites.end()),
-      mFunctions(sites.size() * lattice.size(), 0),
-      mAtSites(sites.size() * sites.size(), 0),
-      mSpreads(sites.size()) {
-    const size_t places = lattice.size();
-    TESSERA_CHECK(size() >= kCorners && mSites[0] == 0 && mSites[1] == 1 && mSites[2] == 2);
-    for (size_t k = 0; k < kCorners; ++k)
-        for (size_t s = 0; s < places; ++s) mFunctions[k * places + s] = lattice.share(s, int(k));
-    std::array<bool, kCentreSites + 1> ends{};
+      mAtSites(sites.size() * (sites.size() - 1) / 2),
+      mPowers(sites.size()) {
+    const size_t n = mSites.size();
+    TESSERA_CHECK(n >= kCorners && mSites[0] == 0 && mSites[1] == 1 && mSites[2] == 2);
+    std::array<bool, kCentreSites + 1> ends{};  // of groups
     for (const uint8_t count : counts) ends[count] = true;
-    ends[mSites.size()] = true;
+    ends[n] = true;
+    chooseOrder(ends);
+}
 
-    // What the functions so far leave of the kernel's diagonal.
-    std::vector<double> power(places, 0), row(places), known(mSites.size());
-    for (size_t s = kCorners; s < places; ++s) power[s] = lattice.kernel(s)[s];
-    size_t end = kCorners;
-    for (size_t k = kCorners; k < mSites.size(); ++k) {
+void SiteBasis::chooseOrder(std::span<const bool> ends) {
+    const SiteLattice& lattice = *mLattice;
+    const size_t n = mSites.size();
+    // Row k has function k at the sites that come later, as they lie in mSites; power is what the functions
+    // so far leave of the kernel's diagonal there.
+    const auto rows = std::make_unique_for_overwrite<double[]>(n * n);
+    std::vector<double> power(n), known(n);
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t k = 0; k < kCorners; ++k) rows[k * n + i] = lattice.share(mSites[i], int(k));
+        power[i] = lattice.kernel(mSites[i])[mSites[i]];
+    }
+    size_t end = kCorners;  // of the group
+    for (size_t k = kCorners; k < n; ++k) {
         if (k == end) {
             do ++end;
             while (!ends[end]);
-            std::sort(mSites.begin() + ptrdiff_t(k), mSites.begin() + ptrdiff_t(end));
         }
         size_t best = k;
         for (size_t i = k + 1; i < end; ++i)
-            if (power[mSites[i]] > power[mSites[best]]) best = i;
-        std::rotate(mSites.begin() + ptrdiff_t(k), mSites.begin() + ptrdiff_t(best),
-                    mSites.begin() + ptrdiff_t(best) + 1);
-        const size_t site = mSites[k];
-        const double left = power[site];
+            if (power[i] > power[best] || (power[i] == power[best] && mSites[i] < mSites[best])) best = i;
+        const double left = power[best];
         TESSERA_CHECK(left > 0);  // the sites differ
-        std::ranges::copy(lattice.kernel(site), row.begin());
-        double* atSite = &mAtSites[k * mSites.size()];
+        // The site here goes to where the chosen one was.
+        double* atSite = &mAtSites[k * (k - 1) / 2];
         for (size_t j = 0; j < k; ++j) {
-            atSite[j] = mFunctions[j * places + site];
-            known[j] = -(atSite[j] * mSpreads[j]);
+            atSite[j] = std::exchange(rows[j * n + best], rows[j * n + k]);
+            known[j] = -(atSite[j] * mPowers[j]);
         }
-        addRows({&known[kCorners], k - kCorners}, &mFunctions[kCorners * places], places, row);
-        finishFunction(row.data(), places, left, &mFunctions[k * places], power.data());
-        mSpreads[k] = left;
-    }
-    for (double& s : mSpreads) s = std::sqrt(s);
+        std::swap(mSites[k], mSites[best]);
+        power[best] = power[k];
+        mPowers[k] = left;
 
-    const size_t n = mSites.size();
-    std::vector<double> weighted(mFunctions.size());
-    for (size_t k = 0; k < n; ++k)
-        for (size_t s = 0; s < places; ++s)
-            weighted[k * places + s] = lattice.weight(s) * mFunctions[k * places + s];
-    mProducts = lowerProducts(weighted, mFunctions, n, places);
+        const auto kernel = lattice.kernel(mSites[k]);
+        const size_t next = k + 1;
+        double* row = &rows[k * n];
+        for (size_t i = next; i < n; ++i) row[i] = kernel[mSites[i]];
+        addRows({&known[kCorners], k - kCorners}, &rows[kCorners * n + next], n, {row + next, n - next});
+        finishFunction(row + next, n - next, left, power.data() + next);
+    }
 }
 
-SiteBasis::Norms SiteBasis::norms(int n) const {
-    const auto count = size_t(n);
-    Norms norms{n, std::vector<double>(count * count, 0)};
-    std::vector<double> known(count + 1);
-    double* t = norms.triangle.data();
-    // Cholesky from the last function back; row k is orthogonal to the functions after k.
-    for (size_t k = count; k-- > 0;) {
-        double* row = t + k * count;
-        std::copy_n(&mProducts[k * mSites.size()], k + 1, row);
-        for (size_t later = k + 1; later < count; ++later) known[later] = -t[later * count + k];
-        addRows({&known[k + 1], count - k - 1}, row + count, count, {row, k + 1});
-        const double root = std::sqrt(row[k]);
-        for (size_t j = 0; j <= k; ++j) row[j] /= root;
+std::vector<double> SiteBasis::functionsAt(std::span<const uint8_t> places, size_t count) const {
+    const size_t length = places.size();
+    std::vector<double> functions(count * length), known(count);
+    for (size_t k = 0; k < count; ++k) {
+        double* row = &functions[k * length];
+        if (k < kCorners) {
+            for (size_t i = 0; i < length; ++i) row[i] = mLattice->share(places[i], int(k));
+            continue;
+        }
+        const auto kernel = mLattice->kernel(mSites[k]);
+        for (size_t i = 0; i < length; ++i) row[i] = kernel[places[i]];
+        for (size_t j = kCorners; j < k; ++j) known[j] = -(before(k)[j] * mPowers[j]);
+        addRows({&known[kCorners], k - kCorners}, &functions[kCorners * length], length, {row, length});
+        for (size_t i = 0; i < length; ++i) row[i] /= mPowers[k];
     }
-    return norms;
+    return functions;
 }
 
 std::vector<double> SiteBasis::values(const PatchSpline& spline, int c, int count) const {
@@ -209,37 +227,42 @@ std::vector<double> SiteBasis::values(const PatchSpline& spline, int c, int coun
 std::vector<double> SiteBasis::factors(std::span<const double> values) const {
     std::vector<double> factors(values.begin(), values.end());
     for (size_t i = 1; i < factors.size(); ++i)
-        for (size_t k = 0; k < i; ++k) factors[i] -= factors[k] * mAtSites[i * mSites.size() + k];
+        for (size_t k = 0; k < i; ++k) factors[i] -= factors[k] * before(i)[k];
     return factors;
 }
 
-PatchSpline SiteBasis::spline(std::span<const std::vector<double>> factors) const {
+std::vector<double> SiteBasis::kernelFactors(std::span<const double> factors) const {
+    std::vector<double> all(factors.begin(), factors.end());
+    // Function k times its power is the kernel about its site and a sum of the functions before it.
+    for (size_t k = kCorners; k < all.size(); ++k) all[k] /= mPowers[k];
+    for (size_t k = all.size(); k-- > kCorners;) {
+        const double less = -all[k];
+        addRows({&less, 1}, before(k).data() + kCorners, 0, {&all[kCorners], k - kCorners});
+    }
+    return all;
+}
+
+PatchSpline SiteBasis::spline(std::span<const std::vector<double>> kernelFactors) const {
     PatchSpline spline;
     size_t most = 0;
-    for (size_t c = 0; c < factors.size(); ++c)
-        spline.terms[c] = uint8_t(factors[c].size() > kCorners ? factors[c].size() : 0);
-    spline.coefficients.reserve(spline.offset(int(factors.size())));
-    for (size_t c = 0; c < factors.size(); ++c) {
-        std::vector<double> left = factors[c];
-        const size_t n = left.size(), terms = spline.terms[c];
-        std::vector<double> alphas(terms, 0);
-        // Function k is 1 / spread^2 times the kernel about its site and a sum of the functions before it.
-        for (size_t k = n; k-- > kCorners;) {
-            const size_t site = mSites[k];
-            const double alpha = left[k] / (mSpreads[k] * mSpreads[k]);
-            const double* atSite = &mAtSites[k * mSites.size()];
-            for (size_t j = kCorners; j < k; ++j) left[j] -= alpha * mSpreads[j] * mSpreads[j] * atSite[j];
-            // The kernel is phi less what makes it 0 at the corners.
-            alphas[k] = alpha;
+    for (size_t c = 0; c < kernelFactors.size(); ++c)
+        spline.terms[c] = uint8_t(kernelFactors[c].size() > kCorners ? kernelFactors[c].size() : 0);
+    spline.coefficients.reserve(spline.offset(int(kernelFactors.size())));
+    for (size_t c = 0; c < kernelFactors.size(); ++c) {
+        const std::vector<double>& alphas = kernelFactors[c];
+        std::array<double, kCorners> plane{alphas[0], alphas[1], alphas[2]}, atCorners{};
+        // The kernel is phi less what makes it 0 at the corners.
+        for (size_t k = alphas.size(); k-- > kCorners;)
             for (size_t q = 0; q < kCorners; ++q) {
-                alphas[q] -= alpha * mLattice->share(site, int(q));
-                left[q] -= alpha * mLattice->cornerKernel(site, q);
+                atCorners[q] -= alphas[k] * mLattice->share(mSites[k], int(q));
+                plane[q] -= alphas[k] * mLattice->cornerKernel(mSites[k], q);
             }
-        }
         for (const double b :
-             {left[0], left[1] - left[0], (left[2] - .5 * (left[0] + left[1])) / kDomainHeight})
+             {plane[0], plane[1] - plane[0], (plane[2] - .5 * (plane[0] + plane[1])) / kDomainHeight})
             spline.coefficients.push_back(float(b));
-        for (const double alpha : alphas) spline.coefficients.push_back(float(alpha));
+        const size_t terms = spline.terms[c];
+        for (size_t k = 0; k < terms; ++k)
+            spline.coefficients.push_back(float(k < kCorners ? atCorners[k] : alphas[k]));
         most = std::max(most, terms);
     }
     spline.sites = std::span(mSites).first(std::max<size_t>(most, kCorners));

@@ -1,6 +1,5 @@
 // The Newton basis (core/mesh/newton_basis.h) of a patch's sites as the codec needs it: in an order that
-// follows from the set of sites alone, known at the points of the sites' lattice, with what rounding a factor
-// costs.
+// follows from the set of sites alone, and known at the points of the sites' lattice.
 //
 // What a decoder foresees depends on these numbers, so they must be the same on every machine: they come from
 // additions, products, quotients and square roots alone, the logarithm included. The order is the P-greedy
@@ -8,6 +7,7 @@
 // the site of which the others tell least.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -39,6 +39,12 @@ class SiteLattice {
     // The sites around the domain's border, from corner a through b and c; side s has those from s *
     // subdivisions() on.
     std::span<const uint8_t> border() const { return mBorder; }
+    // Steps to the nearest side.
+    int ring(size_t site) const;
+    // Of a site from all of them, in units of a step.
+    std::span<const int> squaredDistances(size_t site) const {
+        return {mSquaredDistances.data() + site * size(), size()};
+    }
 
     // Gives a spline whose sites are of this lattice what it is in a mesh: where the lattice is an old one,
     // centres of its own. Returns what is wrong with its sites, or empty.
@@ -48,10 +54,17 @@ class SiteLattice {
     double phi(size_t i, size_t j) const { return mPhi[i * size() + j]; }
     // Phi less what planes and the corners tell: positive semidefinite. A row has size() numbers.
     std::span<const double> kernel(size_t i) const { return {mKernel.data() + i * size(), size()}; }
+    // What SiteBasis::kernelFactors() are of, at the places of border(): a corner's share, or a site's
+    // kernel.
+    std::span<const double> borderFunction(size_t i) const {
+        return {mBorderFunctions.data() + i * mBorder.size(), mBorder.size()};
+    }
     // Phi about a corner less its part at the corners.
     double cornerKernel(size_t site, size_t corner) const { return mCornerKernel[3 * site + corner]; }
     // Of a site in means over the domain: the trapezoidal rule.
     double weight(size_t site) const { return mWeight[site]; }
+    // The same in whole numbers: how many of the six triangles that may meet in a place the domain has.
+    int parts(size_t site) const { return mParts[site]; }
 
   private:
     void fillKernels();
@@ -59,7 +72,8 @@ class SiteLattice {
     int mSubdivisions;
     std::vector<SitePlace> mPlaces;
     std::vector<uint8_t> mBorder;
-    std::vector<double> mPhi, mKernel, mCornerKernel, mWeight;
+    std::vector<int> mParts, mSquaredDistances;
+    std::vector<double> mPhi, mKernel, mBorderFunctions, mCornerKernel, mWeight;
 };
 
 class SiteBasis {
@@ -70,40 +84,35 @@ class SiteBasis {
     SiteBasis(const SiteLattice& lattice, std::span<const uint8_t> sites, std::span<const uint8_t> counts);
 
     int size() const { return int(mSites.size()); }
+    const SiteLattice& lattice() const { return *mLattice; }
     std::span<const uint8_t> sites() const { return mSites; }
-    // Function k at all of the sites of the lattice.
-    std::span<const double> function(int k) const {
-        return {mFunctions.data() + size_t(k) * mLattice->size(), mLattice->size()};
-    }
+    // The functions before k at site k; function k is 1 there.
+    std::span<const double> before(size_t k) const { return {mAtSites.data() + k * (k - 1) / 2, k}; }
     // How much function k's factor varies where colours vary as the kernel has it; 0 at the corners.
-    double spread(int k) const { return mSpreads[size_t(k)]; }
+    double spread(size_t k) const { return std::sqrt(mPowers[k]); }
 
-    // For a channel of n factors: row by row the triangle T of T' T = the functions' mean products over the
-    // domain, k = n - 1 first. With d the errors of the factors, the mean squared error of the spline is the
-    // sum over k of (sum over j <= k of T(k, j) d_j)^2, and T(k, k) is the norm of function k less its best
-    // approximation by the ones after it.
-    struct Norms {
-        int n = 0;
-        std::vector<double> triangle;
-
-        double at(int k, int j) const { return triangle[size_t(k) * size_t(n) + size_t(j)]; }
-    };
-    Norms norms(int n) const;
+    // The first `count` functions, row by row, at some places of the lattice.
+    std::vector<double> functionsAt(std::span<const uint8_t> places, size_t count) const;
 
     // Channel c of a spline over the same sites, in whatever order, at the first `count` sites.
     std::vector<double> values(const PatchSpline& spline, int c, int count) const;
     // The factors of the spline that has `values` at the first sites, in their order.
     std::vector<double> factors(std::span<const double> values) const;
-    // The way back, with the channels' `factors`.
-    PatchSpline spline(std::span<const std::vector<double>> factors) const;
+    // Of the spline with these `factors`: what the corners' barycentric coordinates are multiplied by, which
+    // are its values there, then what the kernels about the other sites are.
+    std::vector<double> kernelFactors(std::span<const double> factors) const;
+    // The way back, with the channels' kernel factors.
+    PatchSpline spline(std::span<const std::vector<double>> kernelFactors) const;
 
   private:
+    // ends[i]: a group ends before the i-th site.
+    void chooseOrder(std::span<const bool> ends);
+
     const SiteLattice* mLattice;
     std::vector<uint8_t> mSites;
-    std::vector<double> mFunctions;
-    std::vector<double> mAtSites;  // row k: the functions before k at site k
-    std::vector<double> mSpreads;
-    std::vector<double> mProducts;  // of functions, size() rows
+    std::vector<double> mAtSites;  // before(k), one after another
+    std::vector<double>
+        mPowers;  // what the functions before k leave of the kernel at site k; 0 at the corners
 };
 
 }  // namespace tessera

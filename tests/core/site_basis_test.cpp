@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
 #include "core/document/site_basis.h"
+#include "core/document/site_norms.h"
 #include "core/mesh/newton_basis.h"
 
 namespace tessera {
@@ -20,6 +22,12 @@ std::vector<uint8_t> randomSites(size_t count, std::mt19937& random) {
 }
 
 const SiteLattice& kLattice = SiteLattice::current();
+
+std::vector<uint8_t> allPlaces() {
+    std::vector<uint8_t> places(kLattice.size());
+    std::iota(places.begin(), places.end(), uint8_t{0});
+    return places;
+}
 
 TEST(SiteLattice, IsThatOfTheCentreSites) {
     ASSERT_EQ(kLattice.size(), size_t(kCentreSites));
@@ -72,6 +80,7 @@ TEST(SiteBasis, IsTheNewtonBasisOfItsOrder) {
     for (const size_t count : {3u, 4u, 12u, 30u, 66u, unsigned(kCentreSites)}) {
         const SiteBasis basis(kLattice, randomSites(count, random), {});
         const NewtonBasis newton(basis.sites());
+        const std::vector<double> functions = basis.functionsAt(allPlaces(), count);
         constexpr size_t kStride = 160;
         std::vector<double> values(count * kStride), dx(values), dy(values);
         newton.evaluateWithDerivatives(x.data(), y.data(), kCentreSites, values.data(), dx.data(), dy.data(),
@@ -80,8 +89,11 @@ TEST(SiteBasis, IsTheNewtonBasisOfItsOrder) {
             for (size_t s = 0; s < kCentreSites; ++s) {
                 const size_t i = k * kStride + s;
                 const double rounding = 1e-7 * (std::abs(dx[i]) + std::abs(dy[i]));  // of the points
-                EXPECT_NEAR(basis.function(int(k))[s], values[i], 1e-9 + rounding);
+                EXPECT_NEAR(functions[k * kCentreSites + s], values[i], 1e-9 + rounding);
             }
+        for (size_t k = 0; k < count; ++k)
+            for (size_t j = 0; j < k; ++j)
+                EXPECT_EQ(basis.before(k)[j], functions[j * kCentreSites + basis.sites()[k]]);
     }
 }
 
@@ -112,34 +124,55 @@ TEST(SiteBasis, FactorsAndSplinesAreEachOthersInverse) {
         const SiteBasis basis(kLattice, randomSites(count, random), {});
         std::vector<double> values;
         for (size_t i = 0; i < count; ++i) values.push_back(unit(random));
-        const std::array factors{basis.factors(values)};
-        const PatchSpline spline = basis.spline(factors);
+        const auto factors = basis.factors(values);
+        const std::array kernelFactors{basis.kernelFactors(factors)};
+        const PatchSpline spline = basis.spline(kernelFactors);
         const auto back = basis.values(spline, 0, int(count));
         for (size_t i = 0; i < count; ++i) {
             EXPECT_NEAR(back[i], values[i], 1e-4);
             EXPECT_NEAR(evaluateSpline(spline, 0, centreSites()[basis.sites()[i]]), values[i], 1e-4);
         }
-        const std::span<const double> span(factors[0]);
+        const std::span<const double> span(factors);
         const PatchSpline newton = NewtonBasis(basis.sites()).spline({&span, 1});
         EXPECT_NEAR(evaluateSpline(spline, 0, {.4, .3}), evaluateSpline(newton, 0, {.4, .3}), 1e-4);
     }
 }
 
-TEST(SiteBasis, NormsGiveTheMeanSquareOfASpline) {
+TEST(SiteBasis, KernelFactorsMakeTheSplineAroundTheBorder) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const SiteBasis basis(kLattice, randomSites(40, random), {});
+    std::vector<double> factors(40);
+    for (double& f : factors) f = unit(random);
+    const std::vector<double> kernelFactors = basis.kernelFactors(factors);
+    const auto border = kLattice.border();
+    const std::vector<double> functions = basis.functionsAt(border, 40);
+    for (size_t i = 0; i < border.size(); ++i) {
+        double direct = 0, byKernels = 0;
+        for (size_t k = 0; k < 40; ++k) {
+            direct += factors[k] * functions[k * border.size() + i];
+            byKernels += kernelFactors[k] * kLattice.borderFunction(basis.sites()[k])[i];
+        }
+        EXPECT_NEAR(byKernels, direct, 1e-9);
+    }
+}
+
+TEST(SiteNorms, GiveTheMeanSquareOfASpline) {
     std::mt19937 random(4);
     std::uniform_real_distribution<double> unit(-1, 1);
     const SiteBasis basis(kLattice, randomSites(18, random), {});
-    for (const int n : {3, 7, 18}) {
-        std::array<std::vector<double>, 1> errors;
-        for (int k = 0; k < n; ++k) errors[0].push_back(unit(random));
-        const SiteBasis::Norms norms = basis.norms(n);
+    const SiteProducts products(basis, 18);
+    for (const size_t n : {3u, 7u, 18u}) {
+        std::vector<double> errors(n);
+        for (double& e : errors) e = unit(random);
+        const SiteNorms norms = products.norms(n);
         double foretold = 0;
-        for (int k = 0; k < n; ++k) {
+        for (size_t k = 0; k < n; ++k) {
             double sum = 0;
-            for (int j = 0; j <= k; ++j) sum += norms.at(k, j) * errors[0][size_t(j)];
+            for (size_t j = 0; j <= k; ++j) sum += norms.at(k, j) * errors[j];
             foretold += sum * sum;
         }
-        const PatchSpline spline = basis.spline(errors);
+        const PatchSpline spline = basis.spline(std::array{basis.kernelFactors(errors)});
         double measured = 0, count = 0;
         constexpr int kGrid = 150;
         for (int i = 0; i < kGrid; ++i)
@@ -150,6 +183,25 @@ TEST(SiteBasis, NormsGiveTheMeanSquareOfASpline) {
                 ++count;
             }
         EXPECT_NEAR(foretold / (measured / count), 1, .1) << n;
+    }
+}
+
+TEST(SiteNorms, AreAboutWhatTheCellsForetell) {
+    std::mt19937 random(6);
+    for (const size_t n : {25u, 40u, 60u, 120u}) {
+        double mean = 0, square = 0;
+        for (int i = 0; i < 20; ++i) {
+            const SiteBasis basis(kLattice, randomSites(n, random), {});
+            const std::vector<double> norms = SiteProducts(basis, n).norms(n).diagonal();
+            const std::vector<double> foretold = foretoldNorms(basis, n);
+            for (size_t k = 0; k < n; ++k) {
+                const double off = std::log(foretold[k] / norms[k]);
+                mean += off / double(20 * n);
+                square += off * off / double(20 * n);
+            }
+        }
+        EXPECT_NEAR(mean, 0, .15) << n;
+        EXPECT_LT(square - mean * mean, .15 * .15) << n;
     }
 }
 
