@@ -348,20 +348,23 @@ Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vec
     return mesh;
 }
 
-std::vector<PatchId> refitColors(PatchMesh& mesh, const FitPicture& picture,
-                                 const std::vector<SiteChoice>& choices, double seamGradientWeight,
-                                 double seamWeight) {
-    Progress progress;
+Result<std::vector<PatchId>> refitColors(PatchMesh& mesh, const FitPicture& picture,
+                                         const std::vector<SiteChoice>& choices, double seamGradientWeight,
+                                         double seamWeight, const ProgressPart& progress) {
     const ColorEquations equations = buildEquations(mesh, picture, choices, {1, seamGradientWeight},
-                                                    samplesPerSide(picture.grid), progress);
+                                                    samplesPerSide(picture.grid), progress.part(0, .5));
+    if (!progress.step(.5)) return stopped();
     VectorXf weights = VectorXf::Ones(Eigen::Index(equations.rowCount));
     weights.tail(weights.size() - equations.cellRows).setConstant(float(seamWeight));
     std::array<PatchVectors, kMaxChannels> factors;
     int iterations = 0;
     for (int c = 0; c < mesh.channels(); ++c) {
+        const double from = .5 + .5 * c / mesh.channels(), to = .5 + .5 * (c + 1) / mesh.channels();
+        const ProgressPart part = progress.part(from, to);
         ChannelSystem system(equations, choices, weights, c);
-        system.factorize(progress);
-        factors[size_t(c)] = conjugateGradients(system, {}, kTolerance, iterations, progress);
+        if (!system.factorize(part)) return stopped();
+        factors[size_t(c)] = conjugateGradients(system, {}, kTolerance, iterations, part);
+        if (!part.step(1)) return stopped();
     }
     setSplines(mesh, equations, choices, factors);
     std::vector<PatchId> solved;
