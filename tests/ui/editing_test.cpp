@@ -170,6 +170,17 @@ TEST_F(Editing, TheEyedropperSeesWhatIsSeenThoughThePointerRests) {
     EXPECT_EQ(swatch(), painted);
 }
 
+TEST_F(Editing, ThePanelSaysWhenThePhotoIsMissing) {
+    auto* find = window->panel().findChild<QPushButton*>("findPhoto");
+    ASSERT_NE(find, nullptr);
+    EXPECT_FALSE(find->isVisible());
+    session()->setPhoto({}, photo);
+    EXPECT_TRUE(find->isVisible());
+    workspace().relinkPhoto(photo);
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(find->isVisible());
+}
+
 // New patches are in pages of memory that the mesh from before does not have: nobody may look for them there.
 TEST_F(Editing, ASelectionThatIsSplitGoesOnWithItsParts) {
     constexpr size_t kPatchesOfAPage = 512;
