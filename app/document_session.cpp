@@ -15,7 +15,8 @@ DocumentSession::DocumentSession(Document document, Photo photo, QString path, Q
       mPhoto(std::move(photo)),
       mPath(std::move(path)),
       mPhotoPath(std::move(photoPath)),
-      mHistory(*this) {}
+      mHistory(*this),
+      mMarks(mDocument.mesh) {}
 
 int DocumentSession::width() const {
     return hasMesh() ? mDocument.mesh.width() : mPhoto.image ? mPhoto.image->width() : 0;
@@ -27,13 +28,7 @@ int DocumentSession::height() const {
 
 bool DocumentSession::hasAlpha() const {
     if (!hasMesh()) return mPhoto.image && mPhoto.image->hasAlpha();
-    const PatchMesh& mesh = mDocument.mesh;
-    bool leftOut = false;
-    mesh.forEachPatch([&](PatchId p) {
-        const PatchAttributes& attributes = mesh.attributes(p);
-        leftOut = leftOut || attributes.hidden || attributes.cutOut;
-    });
-    return leftOut || mesh.channels() == 4;
+    return mMarks.leavesHoles() || mDocument.mesh.channels() == 4;
 }
 
 QString DocumentSession::displayName() const {
@@ -81,6 +76,10 @@ void DocumentSession::showPreview(PatchMesh mesh, const Change& change) {
 void DocumentSession::announce(const PatchMesh& before, const Change& change) {
     if (change.mesh()) {
         mIndex.follow(mDocument.mesh, change);
+        if (change.replaced || change.touched.topology)
+            mMarks = PatchMarks(mDocument.mesh);
+        else
+            mMarks.update(mDocument.mesh, change.touched.patches);
         mSelection.follow(before, mDocument.mesh, change);
     }
     emit changed(change);

@@ -10,6 +10,7 @@
 #include "app/change.h"
 #include "app/history.h"
 #include "app/mesh_index.h"
+#include "app/patch_marks.h"
 #include "app/picture_pyramid.h"
 #include "app/selection.h"
 #include "core/document/document.h"
@@ -60,6 +61,7 @@ class DocumentSession : public QObject {
     // Of the mesh as it is shown now; references hold until the next change.
     const PatchQuery& query() { return mIndex.query(mDocument.mesh); }
     const PatchColours& colours() { return mIndex.colours(mDocument.mesh); }
+    const PatchMarks& marks() const { return mMarks; }
 
     // Whether an EditSession is open: the document then is a preview, without a revision of its own.
     bool editing() const { return mEditing; }
@@ -104,6 +106,7 @@ class DocumentSession : public QObject {
     History mHistory;
     Selection mSelection;
     MeshIndex mIndex;
+    PatchMarks mMarks;
 };
 
 }  // namespace tessera

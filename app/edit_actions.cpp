@@ -95,11 +95,11 @@ Result<void> clearFlag(DocumentSession& session, PatchFlag flag) {
     const QString text = flag == PatchFlag::Hidden   ? QObject::tr("Show All")
                          : flag == PatchFlag::Locked ? QObject::tr("Unlock All")
                                                      : QObject::tr("Fill In All");
-    return apply(session, text, [&](PatchMesh& mesh) {
-        PatchSet all;
-        mesh.forEachPatch([&](PatchId p) { all.push_back(p); });
-        return setFlags(mesh, all, flag, false);
-    });
+    const PatchMarks& marks = session.marks();
+    const PatchSet marked = flag == PatchFlag::Hidden   ? marks.hidden()
+                            : flag == PatchFlag::Locked ? marks.locked()
+                                                        : marks.cutOut();
+    return apply(session, text, [&](PatchMesh& mesh) { return setFlags(mesh, marked, flag, false); });
 }
 
 Result<void> resetColours(DocumentSession& session) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/edit/split_merge.h"
 
 namespace tessera {
 
@@ -14,7 +15,7 @@ void push(DocumentSession& session, const QString& text, PatchMesh mesh, const T
     if (!after.fitted) after.fitted = after.mesh;
     if (touched.topology) {
         for (NamedSelection& selection : after.selections)
-            selection.patches = remapped(after.mesh, mesh, selection.patches);
+            selection.patches = carriedOver(after.mesh, mesh, selection.patches);
         std::erase_if(after.selections, [](const NamedSelection& s) { return s.patches.empty(); });
     }
     after.mesh = std::move(mesh);

@@ -198,7 +198,10 @@ Result<ElementEdit> refitColours(const DocumentSession& session) {
     return selectedPatches(session).map([photo = *photo](PatchSet patches) {
         const size_t count = patches.size();
         const auto run = [patches = std::move(patches), photo](PatchMesh& mesh, Progress& progress) {
-            return Tally(patches.size(), progress).edited(refitColours(mesh, *photo, patches));
+            progress.beginStage("", 1);
+            return refitColours(mesh, *photo, patches, ProgressPart(progress)).map([](Touched touched) {
+                return EditedElements{std::move(touched), {}};
+            });
         };
         return ElementEdit{QObject::tr("Refit Colours"), count, run};
     });

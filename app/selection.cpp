@@ -2,10 +2,10 @@
 #include "app/selection.h"
 
 #include <algorithm>
-#include <optional>
+#include <array>
 #include <utility>
 
-#include "core/mesh/patch_query.h"
+#include "core/edit/split_merge.h"
 
 namespace tessera {
 
@@ -23,6 +23,28 @@ bool has(const HalfedgeMesh& connectivity, Id id, size_t capacity) {
     return id.index < capacity && connectivity.alive(id);
 }
 
+std::array<VertexId, 2> endsOf(const HalfedgeMesh& connectivity, EdgeId e) {
+    const HalfedgeId h = HalfedgeMesh::halfedge(e);
+    return {connectivity.origin(h), connectivity.target(h)};
+}
+
+// The curves of `before` in `after`; both halves of one that was split.
+std::vector<EdgeId> followed(const HalfedgeMesh& before, const HalfedgeMesh& after,
+                             const std::vector<EdgeId>& curves) {
+    std::vector<EdgeId> result;
+    for (const EdgeId e : curves) {
+        if (!has(after, e, after.edgeCapacity())) continue;
+        result.push_back(e);
+        const auto was = endsOf(before, e), is = endsOf(after, e);
+        for (const size_t end : {0, 1}) {
+            if (is[end] == was[end] || is[end].index < before.vertexCapacity()) continue;
+            const HalfedgeId rest = after.find(is[end], was[end]);
+            if (rest.valid()) result.push_back(HalfedgeMesh::edge(rest));
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
 PatchSet combined(const PatchSet& set, const PatchSet& found, SelectMode mode) {
@@ -37,26 +59,6 @@ PatchSet combined(const PatchSet& set, const PatchSet& found, SelectMode mode) {
             return intersected(set, found);
     }
     return set;
-}
-
-PatchSet remapped(const PatchMesh& before, const PatchMesh& after, const PatchSet& set) {
-    std::vector<bool> member(before.connectivity().faceCapacity());
-    for (const PatchId p : set) member[p.index] = true;
-    std::optional<PatchQuery> query;  // where there is a new patch
-    PatchSet result;
-    after.forEachPatch([&](PatchId p) {
-        std::optional<PatchId> was;
-        if (has(before.connectivity(), p, member.size())) {
-            was = p;
-        } else {
-            if (!query) query.emplace(before);
-            constexpr Barycentric kCentre(1. / 3, 1. / 3, 1. / 3);
-            const glm::dvec2 centre = evaluate(toPixels(after.controlPoints(p)), kCentre);
-            if (const auto hit = query->patchAt(centre)) was = hit->patch;
-        }
-        if (was && member[was->index]) result.push_back(p);
-    });
-    return result;
 }
 
 void Selection::setPatches(PatchSet patches) {
@@ -76,11 +78,8 @@ void Selection::follow(const PatchMesh& before, const PatchMesh& after, const Ch
     if (!change.touched.topology || empty()) return;
     std::vector<ControlPointRef> points = mPoints;
     std::erase_if(points, [&](const ControlPointRef& point) { return !alive(after, point); });
-    std::vector<EdgeId> curves = mCurves;
-    const HalfedgeMesh& connectivity = after.connectivity();
-    std::erase_if(curves, [&](EdgeId e) { return !has(connectivity, e, connectivity.edgeCapacity()); });
-    set(mPatches.empty() ? PatchSet() : remapped(before, after, mPatches), std::move(points),
-        std::move(curves));
+    set(carriedOver(before, after, mPatches), std::move(points),
+        sorted(followed(before.connectivity(), after.connectivity(), mCurves)));
 }
 
 void Selection::set(PatchSet patches, std::vector<ControlPointRef> points, std::vector<EdgeId> curves) {

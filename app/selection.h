@@ -15,13 +15,9 @@ enum class SelectMode { Replace, Add, Subtract, Intersect };
 // `set` with `found` in the way of the mode.
 PatchSet combined(const PatchSet& set, const PatchSet& found, SelectMode mode);
 
-// The set of `before` as patches of `after`, of the same picture: patches that both have stay in or out; a new
-// one is in where it lies in a patch that was.
-PatchSet remapped(const PatchMesh& before, const PatchMesh& after, const PatchSet& set);
-
 // Not a part of the document: no step of the history, and no reason to save. Follows the document's changes
-// before others hear of them: what has gone is not selected, the parts of what was split are, and another mesh
-// has no selection.
+// before others hear of them: what has gone is not selected, the parts of what was split are, and another
+// mesh has no selection.
 class Selection : public QObject {
     Q_OBJECT
 

@@ -1,6 +1,7 @@
 // See settings.h.
 #include "app/settings.h"
 
+#include <QDir>
 #include <QFileInfo>
 #include <QStandardPaths>
 
@@ -78,7 +79,8 @@ void Settings::clearRecentFiles() {
 QString Settings::folder() const {
     const QString folder = mSettings.value("files/folder").toString();
     if (!folder.isEmpty() && QFileInfo(folder).isDir()) return folder;
-    return QStandardPaths::writableLocation(QStandardPaths::PicturesLocation);
+    const QString pictures = QStandardPaths::writableLocation(QStandardPaths::PicturesLocation);
+    return QFileInfo(pictures).isDir() ? pictures : QDir::homePath();
 }
 
 void Settings::setFolder(const QString& folder) {

@@ -1,5 +1,6 @@
 // The half of the canvas that listens: wheel, pointer and keys.
 #include <QContextMenuEvent>
+#include <QGuiApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QNativeGestureEvent>
@@ -176,8 +177,18 @@ void CanvasWidget::leaveEvent(QEvent*) {
 void CanvasWidget::setPeeking(bool on) {
     if (mPeeking == on) return;
     mPeeking = on;
+    lookAgain();
+}
+
+void CanvasWidget::lookAgain() {
     update();
     reportCursor();
+    hoverAgain(QGuiApplication::keyboardModifiers());
+}
+
+void CanvasWidget::hoverAgain(Qt::KeyboardModifiers modifiers) {
+    if (mCursor && toolsInUse() && !mTools->active())
+        mTools->move(toolEvent(*mCursor / devicePixelRatioF(), modifiers));
 }
 
 void CanvasWidget::setSpace(bool on) {
@@ -186,6 +197,8 @@ void CanvasWidget::setSpace(bool on) {
 }
 
 void CanvasWidget::keyPressEvent(QKeyEvent* event) {
+    // Its own event does not have it among its modifiers yet.
+    if (event->key() == Qt::Key_Alt) hoverAgain(event->modifiers() | Qt::AltModifier);
     if (event->key() == Qt::Key_O && event->modifiers() == Qt::NoModifier)
         setPeeking(true);
     else if (event->key() == Qt::Key_Space)
@@ -199,6 +212,7 @@ void CanvasWidget::keyPressEvent(QKeyEvent* event) {
 void CanvasWidget::keyReleaseEvent(QKeyEvent* event) {
     // A held key repeats as pairs of press and release on X11.
     if (event->isAutoRepeat()) return;
+    if (event->key() == Qt::Key_Alt) hoverAgain(event->modifiers() & ~Qt::AltModifier);
     if (event->key() == Qt::Key_O)
         setPeeking(false);
     else if (event->key() == Qt::Key_Space)
@@ -209,8 +223,9 @@ void CanvasWidget::keyReleaseEvent(QKeyEvent* event) {
 
 void CanvasWidget::focusOutEvent(QFocusEvent*) {
     // The releases will go elsewhere.
-    mPeeking = mSpace = mPanning = mPressed = mDraggingSplit = false;
+    mSpace = mPanning = mPressed = mDraggingSplit = false;
     if (mTools) mTools->cancel();
+    setPeeking(false);
     updateCursor();
     update();
 }

@@ -131,7 +131,7 @@ void CanvasWidget::follow(const Change& change) {
                 for (const HalfedgeId h : mMesh.connectivity().sides(p))
                     edges.push_back(HalfedgeMesh::edge(h));
         mOverlay.update(mMesh, edges);
-        if (!change.touched.patches.empty()) outlineCutOut();
+        outlineCutOut();
     }
     update();
 }
@@ -151,12 +151,9 @@ void CanvasWidget::measureFeatures() {
 }
 
 void CanvasWidget::outlineCutOut() {
-    PatchSet cutOut;
-    mMesh.forEachPatch([&](PatchId p) {
-        if (mMesh.attributes(p).cutOut) cutOut.push_back(p);
-    });
+    const PatchSet cutOut = mSession && !mDrafting ? mSession->marks().cutOut() : PatchSet();
     if (cutOut == mCutOut) return;
-    mCutOut = std::move(cutOut);
+    mCutOut = cutOut;
     mCutOutOutline = outlineEdges(mMesh, mCutOut);
 }
 
@@ -217,13 +214,12 @@ bool CanvasWidget::showsPhoto() const {
 
 void CanvasWidget::setShowOriginal(bool on) {
     mShowOriginal = on;
-    update();
-    reportCursor();
+    lookAgain();
 }
 
 void CanvasWidget::setSplit(bool on) {
     mSplit = on;
-    update();
+    lookAgain();
 }
 
 void CanvasWidget::setXRay(bool on) {

@@ -125,6 +125,9 @@ class CanvasWidget : public QWidget {
     bool seesPhoto(QPointF devicePosition) const;
     bool overSplitLine(QPointF devicePosition) const;
     void setPeeking(bool on);
+    // Something else is seen at the pointer, which has not moved.
+    void lookAgain();
+    void hoverAgain(Qt::KeyboardModifiers modifiers);
     void setSpace(bool on);
     bool dragsView(const QMouseEvent& event) const;
     void dragView(QPointF position);

@@ -6,6 +6,7 @@
 #include <QOpenGLContext>
 #include <optional>
 
+#include "app/patch_marks.h"
 #include "app/picture_pyramid.h"
 #include "render/gl_objects.h"
 #include "render/offscreen_gl.h"
@@ -62,12 +63,13 @@ class GlDrawer : public FrameDrawer {
 
     void setMesh(const PatchMesh& mesh) override {
         mRenderer->setMesh(mesh);
-        look(mesh);
+        mMarks = PatchMarks(mesh);
+        mChannels = mesh.channels();
     }
 
     void update(const PatchMesh& mesh, std::span<const PatchId> patches) override {
         mRenderer->update(mesh, patches);
-        look(mesh);
+        mMarks.update(mesh, patchSet({patches.begin(), patches.end()}));
     }
 
     Result<QImage> draw(const View& view) override {
@@ -79,7 +81,8 @@ class GlDrawer : public FrameDrawer {
         mTarget->bind();
         if (const auto drawn = mRenderer->draw(view, {.showHidden = false}); !drawn)
             return tl::unexpected<Error>(drawn.error());
-        return toQImage(mTarget->read(mTransparent ? 4 : 3));
+        const bool transparent = mChannels == 4 || mMarks.leavesHoles();
+        return toQImage(mTarget->read(transparent ? 4 : 3));
     }
 
   private:
@@ -87,21 +90,14 @@ class GlDrawer : public FrameDrawer {
 
     bool makeCurrent() { return mContext.isValid() && mContext.makeCurrent(&mSurface); }
 
-    void look(const PatchMesh& mesh) {
-        mTransparent = mesh.channels() == 4;
-        mesh.forEachPatch([&](PatchId p) {
-            const PatchAttributes& attributes = mesh.attributes(p);
-            mTransparent = mTransparent || attributes.hidden || attributes.cutOut;
-        });
-    }
-
     QOffscreenSurface mSurface;
     QOpenGLContext mContext;
     std::optional<render::Renderer> mRenderer;
     std::optional<render::OffscreenTarget> mTarget;
     QSize mSize;
     render::GlDevice mDevice;
-    bool mTransparent = false;
+    PatchMarks mMarks;
+    int mChannels = 3;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ui/conversions.h"
 
@@ -32,6 +33,7 @@ const QColor kMarkOutline(10, 12, 16);
 // A curve is drawn as segments of about this length.
 constexpr double kSegmentPx = 7;
 constexpr double kMaxSegments = 64;
+constexpr double kDashPx = 6;
 // Round caps close the notches between segments, but cost eight times as much as the lines themselves; where
 // there are many lines, they are short and nobody sees notches.
 constexpr size_t kMaxRoundCaps = 4000;
@@ -139,16 +141,28 @@ void drawLines(QPainter& painter, const std::vector<QLineF>& lines, const QColor
     painter.drawLines(lines.data(), int(lines.size()));
 }
 
-std::vector<QLineF> everyOther(const std::vector<QLineF>& lines) {
-    std::vector<QLineF> kept;
-    for (size_t i = 0; i < lines.size(); i += 2) kept.push_back(lines[i]);
-    return kept;
-}
-
 void drawTwoTone(QPainter& painter, const std::vector<QLineF>& lines, const LineStyle& style,
                  double pixelRatio, bool halo) {
     if (halo) drawLines(painter, lines, style.halo, style.haloPx * pixelRatio);
-    drawLines(painter, style.dashed ? everyOther(lines) : lines, style.core, style.corePx * pixelRatio);
+    drawLines(painter, lines, style.core, style.corePx * pixelRatio);
+}
+
+// The length of a curve, near enough to lay dashes by.
+double lengthOf(const std::array<QPointF, 4>& p) {
+    constexpr int kParts = 8;
+    double sum = 0;
+    for (int i = 0; i < kParts; ++i) sum += length(at(p, (i + 1.) / kParts) - at(p, double(i) / kParts));
+    return sum;
+}
+
+// What of a line belongs to dashes, where `along` is how far it begins along an outline of dashes and gaps of
+// `dash` each.
+void appendDashes(std::vector<QLineF>& dashes, const QLineF& line, double along, double dash) {
+    const double size = line.length();
+    for (double from = 2 * dash * std::floor(along / (2 * dash)) - along; from < size; from += 2 * dash) {
+        const double a = std::max(from, 0.), b = std::min(from + dash, size);
+        if (a < b) dashes.emplace_back(line.pointAt(a / size), line.pointAt(b / size));
+    }
 }
 
 QRectF markAt(QPointF centre, double size) {
@@ -244,15 +258,50 @@ void OverlayPainter::paintOutline(QPainter& painter, const ViewTransform& view, 
     std::vector<Shown> found;
     for (const EdgeId e : edges) appendShown(found, mCurves[e.index], view, window);
     std::vector<QLineF> lines;
-    for (Shown& edge : found) {
-        // Dashes are the segments, every other one.
-        if (style.dashed) edge.straight = false;
-        appendCurve(lines, edge, clip, pixelRatio);
-    }
+    for (const Shown& edge : found) appendCurve(lines, edge, clip, pixelRatio);
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing);
-    drawTwoTone(painter, lines, style, pixelRatio, true);
+    drawLines(painter, lines, style.halo, style.haloPx * pixelRatio);
+    drawLines(painter, style.dashed ? dashesAlong(edges, view, clip, pixelRatio) : lines, style.core,
+              style.corePx * pixelRatio);
     painter.restore();
+}
+
+std::vector<QLineF> OverlayPainter::dashesAlong(std::span<const EdgeId> edges, const ViewTransform& view,
+                                                const QRectF& clip, double pixelRatio) const {
+    const QRectF window(view.toImage(clip.topLeft()), view.toImage(clip.bottomRight()));
+    std::vector<QLineF> dashes;
+    std::vector<Shown> shown;
+    double along = 0;  // image px
+    std::optional<QPointF> end;
+    for (size_t i = 0; i < edges.size(); ++i) {
+        Curve curve = mCurves[edges[i].index];
+        const auto meets = [](QPointF point, const Curve& other) {
+            return point == other.p[0] || point == other.p[3];
+        };
+        // It goes on from where the one before has ended; a first one toward the one that follows.
+        const bool goesOn = end && meets(*end, curve);
+        const bool turned = goesOn ? *end != curve.p[0]
+                                   : i + 1 < edges.size() && !meets(curve.p[3], mCurves[edges[i + 1].index]);
+        if (turned) std::reverse(curve.p.begin(), curve.p.end());
+        if (!goesOn) along = 0;
+        shown.clear();
+        appendShown(shown, curve, view, window);
+        if (!shown.empty()) appendDashedCurve(dashes, shown.front(), along * view.scale(), clip, pixelRatio);
+        along += lengthOf(curve.p);
+        end = curve.p[3];
+    }
+    return dashes;
+}
+
+void OverlayPainter::appendDashedCurve(std::vector<QLineF>& dashes, const Shown& edge, double along,
+                                       const QRectF& clip, double pixelRatio) {
+    forEachSegment(edge, pixelRatio, [&](QPointF from, QPointF to) {
+        QPointF a = from, b = to;
+        if (clipSegment(a, b, clip))
+            appendDashes(dashes, QLineF(a, b), along + length(a - from), kDashPx * pixelRatio);
+        along += length(to - from);
+    });
 }
 
 void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
@@ -290,17 +339,22 @@ void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& ed
     }
 }
 
-void OverlayPainter::appendCurve(std::vector<QLineF>& lines, const Shown& edge, const QRectF& clip,
-                                 double pixelRatio) {
+template <class Visit>
+void OverlayPainter::forEachSegment(const Shown& edge, double pixelRatio, Visit&& visit) {
     const auto& p = edge.p;
     const double reach = length(p[1] - p[0]) + length(p[2] - p[1]) + length(p[3] - p[2]);
     const int n = edge.straight ? 1 : int(std::clamp(reach / (kSegmentPx * pixelRatio), 2.0, kMaxSegments));
     QPointF last = p[0];
     for (int i = 1; i <= n; ++i) {
         const QPointF next = i == n ? p[3] : at(p, double(i) / n);
-        appendSegment(lines, last, next, clip);
+        visit(last, next);
         last = next;
     }
+}
+
+void OverlayPainter::appendCurve(std::vector<QLineF>& lines, const Shown& edge, const QRectF& clip,
+                                 double pixelRatio) {
+    forEachSegment(edge, pixelRatio, [&](QPointF a, QPointF b) { appendSegment(lines, a, b, clip); });
 }
 
 void OverlayPainter::paintControlPoints(QPainter& painter, const std::vector<Shown>& edges,

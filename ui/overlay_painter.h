@@ -34,7 +34,7 @@ struct LineStyle {
     QColor halo;
     double corePx;
     double haloPx;
-    bool dashed = false;  // the core alone
+    bool dashed = false;  // the core alone, of outlines
 };
 
 // The curves of one state of a mesh in flat arrays, made once, so that a frame costs a pass over the boxes
@@ -56,7 +56,8 @@ class OverlayPainter {
     void paint(QPainter& painter, const ViewTransform& view, const QRectF& visible, double pixelRatio,
                const OverlayOptions& options) const;
 
-    // Paints these edges alone, as the outline of what is selected.
+    // Paints these edges alone, as the outline of what is selected. Dashes run on from an edge to the next
+    // where that begins or ends there.
     void paintOutline(QPainter& painter, const ViewTransform& view, const QRectF& visible, double pixelRatio,
                       std::span<const EdgeId> edges, const LineStyle& style) const;
 
@@ -89,7 +90,15 @@ class OverlayPainter {
                             double pixelRatio, const OverlayOptions& options);
     static void paintControlPoints(QPainter& painter, const std::vector<Shown>& edges, const QRectF& clip,
                                    double pixelRatio, bool withHandles);
-    // Flattens an edge into segments; a segment that misses `clip` is left out.
+    std::vector<QLineF> dashesAlong(std::span<const EdgeId> edges, const ViewTransform& view,
+                                    const QRectF& clip, double pixelRatio) const;
+    // `along`: where it begins along its outline, in screen px.
+    static void appendDashedCurve(std::vector<QLineF>& dashes, const Shown& edge, double along,
+                                  const QRectF& clip, double pixelRatio);
+    // Flattens an edge.
+    template <class Visit>
+    static void forEachSegment(const Shown& edge, double pixelRatio, Visit&& visit);
+    // Its segments; one that misses `clip` is left out.
     static void appendCurve(std::vector<QLineF>& lines, const Shown& edge, const QRectF& clip,
                             double pixelRatio);
 

@@ -107,11 +107,8 @@ unsigned offered(const DocumentSession& session) {
     unsigned found = session.photo().image ? unsigned{kPhoto} : 0;
     if (!selection.patches().empty()) found |= kPatches;
     if (!selection.curves().empty()) found |= kCurves;
-    mesh.forEachPatch([&](PatchId p) {
-        const PatchAttributes& attributes = mesh.attributes(p);
-        if (attributes.hidden) found |= kHidden;
-        if (attributes.locked) found |= kLocked;
-    });
+    if (!session.marks().hidden().empty()) found |= kHidden;
+    if (!session.marks().locked().empty()) found |= kLocked;
     for (const PatchId p : selection.patches()) found |= mesh.attributes(p).cutOut ? kCutOut : kOpaque;
     for (const EdgeId e : selection.curves()) found |= mesh.curve(e).feature ? kFeature : kPlain;
     return found;

@@ -67,19 +67,12 @@ QString leftText(double seconds) {
 }
 
 // How many patches are not as any other, each kind named where there are some.
-QString statesText(const PatchMesh& mesh) {
-    size_t hidden = 0, locked = 0, cutOut = 0;
-    mesh.forEachPatch([&](PatchId p) {
-        const PatchAttributes& attributes = mesh.attributes(p);
-        hidden += attributes.hidden ? 1 : 0;
-        locked += attributes.locked ? 1 : 0;
-        cutOut += attributes.cutOut ? 1 : 0;
-    });
+QString statesText(const PatchMarks& marks) {
     QString text;
-    for (const auto& [count, words] :
-         {std::pair(hidden, StatusBar::tr("%1 hidden")), std::pair(locked, StatusBar::tr("%1 locked")),
-          std::pair(cutOut, StatusBar::tr("%1 cut out"))})
-        if (count > 0) text += words.arg(countText(count)) + "  ·  ";
+    for (const auto& [patches, words] : {std::pair(&marks.hidden(), StatusBar::tr("%1 hidden")),
+                                         std::pair(&marks.locked(), StatusBar::tr("%1 locked")),
+                                         std::pair(&marks.cutOut(), StatusBar::tr("%1 cut out"))})
+        if (!patches->empty()) text += words.arg(countText(patches->size())) + "  ·  ";
     return text;
 }
 
@@ -194,7 +187,7 @@ void StatusBar::showCursor(std::optional<QPointF> image, QColor colour) {
 void StatusBar::showCounts(const DocumentSession* session, size_t features) {
     QString text;
     if (session && session->hasMesh()) {
-        text = statesText(session->document().mesh) +
+        text = statesText(session->marks()) +
                tr("%1 patches  ·  %2 feature curves")
                    .arg(countText(session->document().mesh.patchCount()), countText(features));
         if (const auto& difference = session->document().difference)

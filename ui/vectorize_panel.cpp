@@ -84,6 +84,7 @@ QWidget* VectorizePanel::makeVectorizePart(const ActionTable& actions) {
     showFieldsOfMethod();
     column->addSpacing(4);
     column->addWidget(makeVectorizeButton(actions));
+    column->addWidget(mPhotoMissing = makePhotoMissingPart(actions));
     column->addSpacing(4);
     auto* onOpen = makeOption(tr("Vectorize photos when opened"), mSettings.vectorizeOnOpen(),
                               &Settings::setVectorizeOnOpen);
@@ -180,6 +181,22 @@ QPushButton* VectorizePanel::makeVectorizeButton(const ActionTable& actions) {
     connect(button, &QPushButton::clicked, vectorize, &QAction::trigger);
     connect(vectorize, &QAction::enabledChanged, button, &QWidget::setEnabled);
     return button;
+}
+
+QWidget* VectorizePanel::makePhotoMissingPart(const ActionTable& actions) {
+    QAction* find = actions[ActionId::Relink];
+    auto* button = new QPushButton(tr("Find the Photo…"));
+    button->setObjectName("findPhoto");
+    button->setFocusPolicy(Qt::TabFocus);
+    button->setToolTip(find->toolTip());
+    connect(button, &QPushButton::clicked, find, &QAction::trigger);
+    auto* part = new QWidget;
+    auto* column = partColumn(part);
+    column->addWidget(
+        dimLabel(tr("The photo is not where it was. Without it nothing can be vectorized "
+                    "again, compared or refitted.")));
+    column->addWidget(button);
+    return part;
 }
 
 QCheckBox* VectorizePanel::makeOption(const QString& text, bool on, void (Settings::*set)(bool)) {
@@ -287,6 +304,7 @@ void VectorizePanel::showSession(const DocumentSession* session, size_t features
     const bool hasMesh = session && session->hasMesh();
     mAmount->setPicture(session ? QSize(session->width(), session->height()) : QSize());
     mResult->setVisible(hasMesh);
+    mPhotoMissing->setVisible(hasMesh && !session->photo().image);
     if (!hasMesh) return;
     while (mFigures->rowCount() > 0) mFigures->removeRow(0);
     const auto add = [&](const QString& name, const QString& value) {

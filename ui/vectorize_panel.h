@@ -54,6 +54,7 @@ class VectorizePanel : public QWidget {
     QWidget* makeFeaturesPart();
     QWidget* makeEdgeContrastPart();
     QPushButton* makeVectorizeButton(const ActionTable& actions);
+    QWidget* makePhotoMissingPart(const ActionTable& actions);
     QCheckBox* makeOption(const QString& text, bool on, void (Settings::*set)(bool));
     bool paperChosen() const;
     void showFieldsOfMethod();
@@ -69,6 +70,7 @@ class VectorizePanel : public QWidget {
     QWidget* mEdgeContrastPart = nullptr;
     QDoubleSpinBox* mEdgeContrast = nullptr;  // in percent
     QPushButton* mApply = nullptr;
+    QWidget* mPhotoMissing = nullptr;  // how to go on without
     QWidget* mResult = nullptr;
     QFormLayout* mFigures = nullptr;
     QLabel* mShortfall = nullptr;

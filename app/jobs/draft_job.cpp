@@ -13,11 +13,17 @@ namespace {
 
 using Ladder = std::shared_ptr<const DraftLadder>;
 
+// A mesh for fewer patches has hardly a vertex beside its features, so that no rung of it would show what
+// lies between them.
+constexpr int kLeastPatches = 2000;
+constexpr double kLeastInitialPatches = 8000;
+
 // A vectorization that ends as soon as it has got to the ladder.
 Result<Ladder> buildLadder(const Image& photo, VectorizeSettings settings, Progress& progress) {
     const Result<void> draft = applyPreset(settings, "draft");
     TESSERA_CHECK(draft.has_value());
-    settings.initialSurplus = 2;
+    settings.patches = std::max(settings.patches, kLeastPatches);
+    settings.initialSurplus = std::max(2., kLeastInitialPatches / settings.patches);
     const auto& stages = stageTable(settings.method);
     const double untilThen = stages[0].weight + stages[1].weight;
     std::stop_source enough;

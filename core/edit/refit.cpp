@@ -2,6 +2,7 @@
 #include "core/edit/refit.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/edit/site_fit.h"
@@ -26,7 +27,8 @@ SiteChoice choiceOf(const PatchSpline& spline, int channels) {
 
 }  // namespace
 
-Touched refitColours(PatchMesh& mesh, const Image& photo, const PatchSet& set) {
+Result<Touched> refitColours(PatchMesh& mesh, const Image& photo, const PatchSet& set,
+                             const ProgressPart& progress) {
     TESSERA_CHECK(photo.width() == mesh.width() && photo.height() == mesh.height() &&
                   photo.channels() == mesh.channels());
     const HalfedgeMesh& c = mesh.connectivity();
@@ -35,13 +37,21 @@ Touched refitColours(PatchMesh& mesh, const Image& photo, const PatchSet& set) {
         for (const HalfedgeId side : c.sides(p))
             if (c.face(HalfedgeMesh::twin(side)).valid()) patches.push_back(c.face(HalfedgeMesh::twin(side)));
     patches = editable(mesh, patchSet(std::move(patches)));
-    if (patches.empty()) return {};
+    if (patches.empty()) return Touched{};
     std::vector<SiteChoice> choices(c.faceCapacity());
     for (const PatchId p : patches) choices[p.index] = choiceOf(mesh.spline(p), mesh.channels());
-    Touched touched;
-    touched.patches = refitColors(mesh, FitPicture(inBasis(photo, mesh.colourBasis())), choices,
-                                  VectorizeSettings{}.seamGradientWeight, kSeamWeight);
-    return touched;
+    return refitColors(mesh, FitPicture(inBasis(photo, mesh.colourBasis())), choices,
+                       VectorizeSettings{}.seamGradientWeight, kSeamWeight, progress)
+        .map([](std::vector<PatchId> solved) {
+            Touched touched;
+            touched.patches = std::move(solved);
+            return touched;
+        });
+}
+
+Touched refitColours(PatchMesh& mesh, const Image& photo, const PatchSet& set) {
+    Progress never;
+    return *refitColours(mesh, photo, set, ProgressPart(never));
 }
 
 }  // namespace tessera

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "core/base/parallel.h"
 #include "core/edit/colour_samples.h"
 #include "core/edit/colour_transfer.h"
 #include "core/edit/deformation.h"
@@ -397,16 +399,28 @@ Result<Touched> mergeEdge(PatchMesh& mesh, EdgeId e) {
 PatchSet carriedOver(const PatchMesh& before, const PatchMesh& after, const PatchSet& set) {
     PatchSet result = alive(after, set);
     std::vector<PatchId> fresh;
+    const HalfedgeMesh& c = before.connectivity();
     after.forEachPatch([&](PatchId p) {
-        if (p.index >= before.connectivity().faceCapacity()) fresh.push_back(p);
+        if (p.index >= c.faceCapacity() || !c.alive(p)) fresh.push_back(p);
     });
-    if (fresh.empty()) return result;
-    // A part lies where the whole was.
+    if (fresh.empty() || set.empty()) return result;
+    const std::vector<uint8_t> member = membership(before, set);
+    const auto isMember = [&](PatchId p) { return member[p.index] != 0; };
     const PatchQuery query(before);
-    for (const PatchId p : fresh) {
-        const auto whole = query.patchAt(evaluate(toPixels(after.controlPoints(p)), Barycentric(1.0 / 3)));
-        if (whole && contains(set, whole->patch)) result.push_back(p);
-    }
+    // A part lies where the whole was. Most have none near but patches in the set, or none of those.
+    std::vector<uint8_t> within(fresh.size(), 0);
+    parallelFor(fresh.size(), 256, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const glm::dvec2 centre = evaluate(toPixels(after.controlPoints(fresh[i])), Barycentric(1.0 / 3));
+            const std::vector<PatchId> near = query.patchesIn({centre, centre});
+            if (std::none_of(near.begin(), near.end(), isMember)) continue;
+            const bool all = std::all_of(near.begin(), near.end(), isMember);
+            const auto whole = all ? std::nullopt : query.patchAt(centre);
+            within[i] = all || (whole && isMember(whole->patch));
+        }
+    });
+    for (size_t i = 0; i < fresh.size(); ++i)
+        if (within[i]) result.push_back(fresh[i]);
     return patchSet(std::move(result));
 }
 

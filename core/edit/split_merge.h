@@ -25,8 +25,8 @@ Result<Touched> splitPatch(PatchMesh& mesh, PatchId p, const Barycentric& at);
 // outline would change.
 Result<Touched> mergeEdge(PatchMesh& mesh, EdgeId e);
 
-// A set of patches of the mesh before one of these edits, after it: patches that are gone leave it, and the
-// parts of one that was split are in it where the whole was.
+// A set of patches of one mesh of a picture as patches of another one: patches that both have stay in or out;
+// a new one is in where it lies in a patch that was.
 PatchSet carriedOver(const PatchMesh& before, const PatchMesh& after, const PatchSet& set);
 
 }  // namespace tessera

@@ -50,31 +50,21 @@ struct Parts {
     }
 };
 
+// What stands in for patches that are held.
+const NewtonBasis& noBasis() {
+    static constexpr uint8_t kCorners[] = {0, 1, 2};
+    static const NewtonBasis kNone(kCorners);
+    return kNone;
+}
+
 class EquationBuilder {
   public:
     EquationBuilder(const PatchMesh& mesh, const FitPicture& picture, const std::vector<SiteChoice>& choices,
                     int samplesPerSide)
-        : mMesh(mesh), mPicture(picture), mSide(samplesPerSide), mBlur(mesh) {
-        m.patches.resize(choices.size());
-        mBases.reserve(choices.size());
-        static constexpr uint8_t kCorners[] = {0, 1, 2};
-        static const NewtonBasis kNone(kCorners);
-        for (uint32_t p = 0; p < choices.size(); ++p) {
-            if (!mesh.connectivity().alive(PatchId(p)) || choices[p].sites.empty()) {
-                mBases.push_back(kNone);
-                continue;
-            }
-            mBases.emplace_back(choices[p].sites);
-            reach(controlBounds(mesh, PatchId(p)));
-            auto& patch = m.patches[p];
-            patch.count = int(choices[p].sites.size());
-            const auto count = size_t(patch.count);
-            patch.gram.assign(count * count, 0);
-            patch.moments.assign(count * size_t(mesh.channels()), 0);
-            patch.damping.assign(count, kRidge);
-        }
-    }
+        : mMesh(mesh), mPicture(picture), mChoices(choices), mSide(samplesPerSide), mBlur(mesh) {}
 
+    // First of all. False where progress says stop; there is nothing to go on with then.
+    bool addUnknowns(const ProgressPart& progress);
     void addCells(const ProgressPart& progress);
     void addSeams(const SeamWeights& weights, const ProgressPart& progress);
     void finish(const ProgressPart& progress);
@@ -111,6 +101,7 @@ class EquationBuilder {
 
     const PatchMesh& mMesh;
     const FitPicture& mPicture;
+    const std::vector<SiteChoice>& mChoices;
     int mSide;
     EdgeBlur mBlur;
     Rect mReach{glm::dvec2(HUGE_VAL), glm::dvec2(-HUGE_VAL)};  // of the patches that are not held
@@ -275,6 +266,28 @@ void EquationBuilder::addPatch(PatchId p, const PatchCells& cells, Parts& parts)
         (means * targets).cast<double>();
 }
 
+bool EquationBuilder::addUnknowns(const ProgressPart& progress) {
+    m.patches.resize(mChoices.size());
+    mBases.assign(mChoices.size(), noBasis());
+    std::atomic<size_t> done = 0;
+    parallelFor(mChoices.size(), 16, [&](size_t begin, size_t end) {
+        for (size_t p = begin; p < end; ++p) {
+            if (!progress.step(double(done++) / double(mChoices.size()))) return;
+            if (!mMesh.connectivity().alive(PatchId(uint32_t(p))) || mChoices[p].sites.empty()) continue;
+            mBases[p] = NewtonBasis(mChoices[p].sites);
+            auto& patch = m.patches[p];
+            patch.count = int(mChoices[p].sites.size());
+            const auto count = size_t(patch.count);
+            patch.gram.assign(count * count, 0);
+            patch.moments.assign(count * size_t(mMesh.channels()), 0);
+            patch.damping.assign(count, kRidge);
+        }
+    });
+    for (uint32_t p = 0; p < m.patches.size(); ++p)
+        if (!held(p)) reach(controlBounds(mMesh, PatchId(p)));
+    return !progress.stopRequested();
+}
+
 void EquationBuilder::addCells(const ProgressPart& progress) {
     const CellSampler sampler(mMesh, mPicture.grid, mSide);
     const size_t first = mParts.size();
@@ -409,7 +422,6 @@ void EquationBuilder::gather(ColorEquations::Patch& patch, const std::vector<Par
 
 // Brings the parts together: rows numbered densely, each patch's factors side by side.
 void EquationBuilder::finish(const ProgressPart& progress) {
-    // The bases were made by one thread; what others allocate from here on would not go where they were.
     mBases = {};
     releaseFreeMemory();
     std::vector<std::vector<Parts::Chunk*>> chunks(m.patches.size());
@@ -475,7 +487,8 @@ ColorEquations buildEquations(const PatchMesh& mesh, const FitPicture& picture,
                               const std::vector<SiteChoice>& choices, const SeamWeights& weights,
                               int samplesPerSide, const ProgressPart& progress) {
     EquationBuilder builder(mesh, picture, choices, samplesPerSide);
-    builder.addCells(progress.part(0, .7));
+    if (!builder.addUnknowns(progress.part(0, .1))) return {};
+    builder.addCells(progress.part(.1, .7));
     builder.addSeams(weights, progress.part(.7, .9));
     if (progress.step(.9)) builder.finish(progress);
     return std::move(builder.m);

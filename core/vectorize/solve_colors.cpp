@@ -224,6 +224,20 @@ PatchVectors conjugateGradients(ChannelSystem& system, const Preconditioner& pre
     return x;
 }
 
+// Each channel's factors from those given (or none). False where progress says stop.
+bool solveChannels(const ColorEquations& equations, const std::vector<SiteChoice>& choices,
+                   const VectorXf& weights, double tolerance, std::span<PatchVectors> factors,
+                   int& iterations, const ProgressPart& progress) {
+    const Preconditioner preconditioner(equations, weights, progress);
+    const double channels = double(factors.size());
+    for (size_t c = 0; c < factors.size() && !progress.stopRequested(); ++c) {
+        ChannelSystem system(equations, choices, weights, int(c));
+        factors[c] = conjugateGradients(system, preconditioner, std::move(factors[c]), tolerance, iterations,
+                                        progress.part(double(c) / channels, double(c + 1) / channels));
+    }
+    return progress.step(1);
+}
+
 // How far the two sides of seams are apart: the mean of |difference| over the channels of the working space,
 // weighted by length, over what it may be; or the 95th percentile, if that is worse.
 double seamExcess(const ColorEquations& equations, const std::vector<SiteChoice>& choices,
@@ -331,19 +345,11 @@ Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vec
     const int passes = settings.seamPasses;
     for (int pass = 0; pass < passes; ++pass) {
         const bool last = pass + 1 == passes;
-        const auto partOf = [&](double solution) {
-            const double solves = passes * mesh.channels(), before = pass * mesh.channels() + solution;
-            return progress.part(.5 + .5 * before / solves, .5 + .5 * (before + 1) / solves);
-        };
-        const Preconditioner preconditioner(equations, weights, partOf(0));
-        for (int c = 0; c < mesh.channels(); ++c) {
-            const ProgressPart part = partOf(c);
-            if (part.stopRequested()) return stopped();
-            ChannelSystem system(equations, choices, weights, c);
-            factors[size_t(c)] = conjugateGradients(system, preconditioner, std::move(factors[size_t(c)]),
-                                                    last ? kTolerance : kFirstTolerance, iterations, part);
-            if (!part.step(1)) return stopped();
-        }
+        const ProgressPart part =
+            progress.part(.5 + .5 * pass / double(passes), .5 + .5 * (pass + 1) / double(passes));
+        if (!solveChannels(equations, choices, weights, last ? kTolerance : kFirstTolerance,
+                           {factors.data(), size_t(mesh.channels())}, iterations, part))
+            return stopped();
         if (last) break;
         seamWeight = search.next(seamWeight,
                                  seamExcess(equations, choices, factors, mesh.channels(), weights, settings));
@@ -358,21 +364,19 @@ Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vec
     return mesh;
 }
 
-std::vector<PatchId> refitColors(PatchMesh& mesh, const FitPicture& picture,
-                                 const std::vector<SiteChoice>& choices, double seamGradientWeight,
-                                 double seamWeight) {
-    Progress progress;
+Result<std::vector<PatchId>> refitColors(PatchMesh& mesh, const FitPicture& picture,
+                                         const std::vector<SiteChoice>& choices, double seamGradientWeight,
+                                         double seamWeight, const ProgressPart& progress) {
     const ColorEquations equations = buildEquations(mesh, picture, choices, {1, seamGradientWeight},
-                                                    samplesPerSide(picture.grid), progress);
+                                                    samplesPerSide(picture.grid), progress.part(0, .5));
+    if (!progress.step(.5)) return stopped();
     VectorXf weights = VectorXf::Ones(Eigen::Index(equations.rowCount));
     weights.tail(weights.size() - equations.cellRows).setConstant(float(seamWeight));
     std::array<PatchVectors, kMaxChannels> factors;
     int iterations = 0;
-    const Preconditioner preconditioner(equations, weights, progress);
-    for (int c = 0; c < mesh.channels(); ++c) {
-        ChannelSystem system(equations, choices, weights, c);
-        factors[size_t(c)] = conjugateGradients(system, preconditioner, {}, kTolerance, iterations, progress);
-    }
+    if (!solveChannels(equations, choices, weights, kTolerance, {factors.data(), size_t(mesh.channels())},
+                       iterations, progress.part(.5, 1)))
+        return stopped();
     setSplines(mesh, equations, choices, factors);
     std::vector<PatchId> solved;
     for (uint32_t p = 0; p < equations.patches.size(); ++p)

@@ -21,9 +21,10 @@ Result<PatchMesh> solveColors(PatchMesh mesh, FitPicture picture, const std::vec
                               const ProgressPart& progress);
 
 // The same least squares for the patches alone whose choice has sites; the others are held, and seams toward
-// them count as much. `picture` in the mesh's basis. The patches that were solved, by ascending id.
-std::vector<PatchId> refitColors(PatchMesh& mesh, const FitPicture& picture,
-                                 const std::vector<SiteChoice>& choices, double seamGradientWeight,
-                                 double seamWeight);
+// them count as much. `picture` in the mesh's basis. The patches that were solved, by ascending id; where it
+// is stopped the mesh stays as it was.
+Result<std::vector<PatchId>> refitColors(PatchMesh& mesh, const FitPicture& picture,
+                                         const std::vector<SiteChoice>& choices, double seamGradientWeight,
+                                         double seamWeight, const ProgressPart& progress);
 
 }  // namespace tessera

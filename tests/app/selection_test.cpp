@@ -135,6 +135,19 @@ TEST_F(SelectionTest, StoredSelectionsArePartsOfTheDocument) {
     EXPECT_TRUE(session.document().selections.empty());
 }
 
+TEST_F(SelectionTest, BothHalvesOfACurveThatIsSplitAreSelected) {
+    std::vector<EdgeId> inner;
+    mesh().forEachEdge([&](EdgeId e) {
+        if (!mesh().connectivity().onBorder(e) && inner.size() < 3) inner.push_back(e);
+    });
+    selection.setShape({}, inner);
+    ASSERT_TRUE(makeNow(session, splitCurves(session)));
+    EXPECT_EQ(selection.curves().size(), 2 * inner.size());
+    for (const EdgeId e : selection.curves()) EXPECT_TRUE(mesh().connectivity().alive(e));
+    session.history().undo();
+    EXPECT_EQ(selection.curves(), inner);
+}
+
 TEST_F(SelectionTest, SimilarIsWhatTheWandFinds) {
     selection.setPatches(ids({3}));
     const WandOptions options{.tolerance = .1, .contiguous = false};

@@ -5,6 +5,7 @@
 
 #include <QSignalSpy>
 #include <QTest>
+#include <cmath>
 
 #include "app/edit_session.h"
 #include "app/element_edits.h"
@@ -247,6 +248,28 @@ TEST_F(WorkspaceTest, TheSelectionIsCopiedAsAPicture) {
     EXPECT_EQ(picture.pixelColor(8, 1).alpha(), 0);
     EXPECT_GT(picture.pixelColor(5, 5).alpha(), 0);
     EXPECT_LT(picture.pixelColor(5, 5).alpha(), 255) << "on the curve, in part";
+}
+
+// Where the slider stood when the drafts were built does not matter to what it shows.
+TEST_F(WorkspaceTest, DraftsOfFewPatchesAreAsGoodAsThoseOnTheWayDownFromMany) {
+    QImage picture(200, 150, QImage::Format_RGB32);
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x) {
+            const bool inside = std::hypot(x % 50 - 25, y % 50 - 25) < 14 + x / 50;
+            picture.setPixel(x, y, inside ? qRgb(220, 60 + y, 40) : qRgb(20, 60, 90 + x / 2));
+        }
+    ASSERT_TRUE(picture.save(path("disks.png")));
+    open(path("disks.png"));
+    std::vector<std::shared_ptr<const DraftLadder>> ladders;
+    for (const int patches : {40, 1500}) {
+        VectorizeSettings settings;
+        settings.patches = patches;
+        workspace.buildDrafts(settings, [&](auto ladder) { ladders.push_back(ladder); });
+        ASSERT_TRUE(idle());
+        ASSERT_NE(ladders.back(), nullptr) << said.text.toStdString();
+    }
+    EXPECT_EQ(ladders[0]->at(40).geometry(), ladders[1]->at(40).geometry());
+    EXPECT_LE(ladders[0]->at(40).patchCount(), 40u);
 }
 
 class ManyElements : public WorkspaceTest {

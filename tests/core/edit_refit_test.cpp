@@ -114,6 +114,24 @@ TEST(RefitColours, LeavesLockedPatchesAndTakesOtherCentres) {
     expectValid(mesh);
 }
 
+TEST(RefitColours, StoppedAnywhereTheMeshIsAsItWas) {
+    PatchSet all;
+    scene().forEachPatch([&](PatchId p) { all.push_back(p); });
+    for (const double share : {0., .05, .3, .6, .9}) {
+        PatchMesh mesh = scene();
+        std::stop_source stop;
+        Progress progress(stop.get_token(), [&](std::string_view, double fraction, double) {
+            if (fraction >= share) stop.request_stop();
+        });
+        if (share == 0) stop.request_stop();
+        progress.beginStage("", 1);
+        const auto touched = refitColours(mesh, photo(), all, ProgressPart(progress));
+        ASSERT_FALSE(touched.has_value()) << share;
+        EXPECT_EQ(touched.error().code, ErrorCode::Stopped);
+        EXPECT_THAT(changedPatches(scene(), mesh), ::testing::IsEmpty()) << share;
+    }
+}
+
 // A step along a circle, and a mesh whose line of features runs a few px beside it.
 TEST(Snap, MovesCurvesOntoTheEdge) {
     const int size = 96;

@@ -269,5 +269,26 @@ TEST(CarriedOver, FollowsSplitsAndMerges) {
     EXPECT_EQ(carriedOver(before, mesh, split).size(), split.size() - 2);
 }
 
+TEST(CarriedOver, TheWaysThereAndBackAreTheSame) {
+    PatchMesh mesh = scene();
+    const PatchMesh before = mesh;
+    PatchSet all, even, parts;
+    before.forEachPatch([&](PatchId p) { all.push_back(p); });
+    for (const PatchId p : all)
+        if (p.index % 2 == 0) even.push_back(p);
+    const PatchQuery query(before);
+    size_t splits = 0;
+    for (const PatchId p : all) splits += splitPatch(mesh, p, Barycentric(1. / 3)).has_value() ? 1 : 0;
+    ASSERT_GT(splits, all.size() / 2);
+    mesh.forEachPatch([&](PatchId p) {
+        const auto whole = query.patchAt(evaluate(toPixels(mesh.controlPoints(p)), Barycentric(1. / 3)));
+        if (whole.value().patch.index % 2 == 0) parts.push_back(p);
+    });
+    EXPECT_EQ(carriedOver(before, mesh, even), parts);
+    EXPECT_EQ(carriedOver(mesh, before, parts), even);
+    EXPECT_EQ(carriedOver(before, mesh, all).size(), mesh.patchCount());
+    EXPECT_TRUE(carriedOver(before, mesh, {}).empty());
+}
+
 }  // namespace
 }  // namespace tessera

@@ -5,6 +5,7 @@
 #include <QSlider>
 #include <QTabBar>
 
+#include "app/edit_actions.h"
 #include "core/document/codec.h"
 #include "core/export/rasterize.h"
 #include "core/mesh/mesh_validate.h"
@@ -144,6 +145,40 @@ TEST_F(Editing, AHiddenPatchIsNotDrawnUntilAllAreShown) {
     key(Qt::Key_3, Qt::ControlModifier | Qt::AltModifier);
     ASSERT_TRUE(settled());
     EXPECT_EQ(difference(grab(), before), 0);
+}
+
+TEST_F(Editing, TheEyedropperSeesWhatIsSeenThoughThePointerRests) {
+    key(Qt::Key_A, Qt::ControlModifier);
+    ASSERT_TRUE(recolourSelection(*session(), "Replace Colour", ReplaceColour{{.1, .6, .2}}, {}));
+    key(Qt::Key_I);
+    const QPoint disk = at(80, 60);
+    QTest::mouseMove(&canvas(), disk);
+    const auto swatch = [&] {
+        const auto& found = window->tools().overlay().swatch;
+        return found ? found->colour : glm::dvec3(-1);
+    };
+    const glm::dvec3 painted = swatch();
+    ASSERT_GT(painted.g, painted.r);
+    QTest::keyPress(&canvas(), Qt::Key_O);
+    const glm::dvec3 photographed = swatch();
+    EXPECT_GT(photographed.r, photographed.g) << "the disk is orange";
+    QTest::keyRelease(&canvas(), Qt::Key_O);
+    EXPECT_EQ(swatch(), painted);
+    QTest::keyPress(&canvas(), Qt::Key_Alt);
+    EXPECT_EQ(swatch(), photographed) << "Alt picks from the other one";
+    QTest::keyRelease(&canvas(), Qt::Key_Alt);
+    EXPECT_EQ(swatch(), painted);
+}
+
+TEST_F(Editing, ThePanelSaysWhenThePhotoIsMissing) {
+    auto* find = window->panel().findChild<QPushButton*>("findPhoto");
+    ASSERT_NE(find, nullptr);
+    EXPECT_FALSE(find->isVisible());
+    session()->setPhoto({}, photo);
+    EXPECT_TRUE(find->isVisible());
+    workspace().relinkPhoto(photo);
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(find->isVisible());
 }
 
 // New patches are in pages of memory that the mesh from before does not have: nobody may look for them there.

@@ -81,6 +81,48 @@ TEST(OverlayPainterTest, LinesKeepTheirWidthAtAnyZoom) {
     }
 }
 
+// The lengths of the runs of one colour along a row, those at its ends left out.
+std::vector<int> runsAlong(const QImage& image, int y, QColor colour) {
+    std::vector<int> runs;
+    int run = 0;
+    bool whole = false;
+    for (int x = 0; x < image.width(); ++x) {
+        if (image.pixelColor(x, y) == colour) {
+            ++run;
+            continue;
+        }
+        if (run > 0 && whole) runs.push_back(run);
+        run = 0;
+        whole = true;
+    }
+    return runs;
+}
+
+TEST(OverlayPainterTest, DashesAreAsLongOnShortEdgesAsOnLongOnes) {
+    // A row of straight edges, each a few px long on the screen, and the ends of half of them turned.
+    for (const int columns : {100, 37, 4}) {
+        const PatchMesh mesh = testing::gridMesh(100, 100, columns, 2);
+        std::vector<std::pair<double, EdgeId>> row;
+        mesh.forEachEdge([&](EdgeId e) {
+            const auto p = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(e))).p;
+            if (p[0].y == 50 && p[3].y == 50) row.emplace_back(std::min(p[0].x, p[3].x), e);
+        });
+        std::sort(row.begin(), row.end());
+        std::vector<EdgeId> edges;
+        for (const auto& [x, e] : row) edges.push_back(e);
+        QImage image(400, 400, QImage::Format_RGB32);
+        image.fill(Qt::gray);
+        QPainter painter(&image);
+        const LineStyle dashed{Qt::white, Qt::black, 2, 4, true};
+        OverlayPainter(mesh).paintOutline(painter, scaled(4), QRectF(image.rect()), 1, edges, dashed);
+        painter.end();
+        const std::vector<int> runs = runsAlong(image, 200, Qt::white);
+        ASSERT_GT(runs.size(), 20U) << columns;
+        const auto [least, most] = std::minmax_element(runs.begin(), runs.end());
+        EXPECT_LE(*most - *least, 2) << columns;
+    }
+}
+
 // Two columns of cells of one colour each, a feature between them.
 PatchMesh twoColours(float left, float right) {
     PatchMesh mesh = testing::gridMesh(100, 100, 2, 1);

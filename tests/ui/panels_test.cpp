@@ -210,6 +210,16 @@ TEST_F(SelectionPanelTest, ButtonsAndCounts) {
     EXPECT_FALSE(child<QPushButton>(panel, "all")->isEnabled());
 }
 
+TEST_F(SelectionPanelTest, PointsAndCurvesCanBeDeselectedToo) {
+    session->selection().setShape({}, {EdgeId(3)});
+    QTest::qWait(5);
+    EXPECT_FALSE(child<QPushButton>(panel, "grow")->isEnabled());
+    press("none");
+    EXPECT_TRUE(session->selection().empty());
+    QTest::qWait(5);
+    EXPECT_FALSE(child<QPushButton>(panel, "none")->isEnabled());
+}
+
 TEST_F(SelectionPanelTest, TellsOfPatchesOutOfReach) {
     auto* counts = child<QLabel>(panel, "counts");
     session->selection().setPatches(column(1));

@@ -1,4 +1,5 @@
-// A panel that looks at its document once a turn of the event loop at most, and not while it is hidden.
+// A panel that looks at its document once a turn of the event loop at most, and not while nothing of it can
+// be seen, be it hidden or behind the tab of another one.
 #pragma once
 
 #include <QWidget>
@@ -15,12 +16,15 @@ class LazyPanel : public QWidget {
     // Shows what there is to see now.
     virtual void refresh() = 0;
     // Refreshes when the present events are through (a marquee changes the selection with each move), or when
-    // the panel is shown.
+    // the panel is seen again.
     void refreshSoon();
     void refreshNow();
     void showEvent(QShowEvent* event) override;
+    void paintEvent(QPaintEvent* event) override;
 
   private:
+    void refreshNext();
+
     bool mStale = false;
 };
 

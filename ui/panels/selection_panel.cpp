@@ -82,15 +82,12 @@ void StoredList::keyPressEvent(QKeyEvent* event) {
 namespace {
 
 // How many patches cannot be selected, and why; empty for none.
-QString outOfReach(const PatchMesh& mesh) {
-    qulonglong hidden = 0, locked = 0;
-    mesh.forEachPatch([&](PatchId p) {
-        hidden += mesh.attributes(p).hidden;
-        locked += mesh.attributes(p).locked;
-    });
+QString outOfReach(const PatchMarks& marks) {
     QStringList parts;
-    if (hidden > 0) parts += QObject::tr("%1 hidden").arg(QLocale().toString(hidden));
-    if (locked > 0) parts += QObject::tr("%1 locked").arg(QLocale().toString(locked));
+    if (const size_t hidden = marks.hidden().size(); hidden > 0)
+        parts += QObject::tr("%1 hidden").arg(QLocale().toString(qulonglong(hidden)));
+    if (const size_t locked = marks.locked().size(); locked > 0)
+        parts += QObject::tr("%1 locked").arg(QLocale().toString(qulonglong(locked)));
     return parts.join(QObject::tr(", "));
 }
 
@@ -122,7 +119,7 @@ QWidget* SelectionPanel::makeButtons() {
     };
     fillGrid(grid,
              {add(tr("All"), tr("Select all patches (Ctrl+A)"), "all", false, &selectAll),
-              add(tr("None"), tr("Select nothing (Ctrl+Shift+A)"), "none", true, &selectNone),
+              mNone = add(tr("None"), tr("Select nothing (Ctrl+Shift+A)"), "none", false, &selectNone),
               add(tr("Invert"), tr("Select what is not selected (Ctrl+Shift+I)"), "invert", false,
                   &invertSelection),
               add(tr("Grow"), tr("Add the patches around the selection"), "grow", true, &growSelection),
@@ -185,6 +182,7 @@ void SelectionPanel::refresh() {
     const bool hasPatches = hasMesh && !mSession->selection().patches().empty();
     for (QPushButton* button : mNeedMesh) button->setEnabled(hasMesh);
     for (QPushButton* button : mNeedSelection) button->setEnabled(hasPatches);
+    mNone->setEnabled(hasMesh && !mSession->selection().empty());
     if (!hasMesh) return mCounts->setText(mSession ? tr("No patches yet") : tr("No document"));
     const Selection& selection = mSession->selection();
     const QLocale locale;
@@ -197,7 +195,7 @@ void SelectionPanel::refresh() {
     if (!selection.curves().empty()) parts += tr("curves: %1").arg(selection.curves().size());
     QString text = parts.isEmpty() ? tr("Nothing selected") : parts.join(tr(", "));
     // Nothing on the canvas tells hidden patches from those cut out, and locked ones look like all others.
-    if (const QString kept = outOfReach(mSession->document().mesh); !kept.isEmpty()) text += '\n' + kept;
+    if (const QString kept = outOfReach(mSession->marks()); !kept.isEmpty()) text += '\n' + kept;
     mCounts->setText(text);
 }
 

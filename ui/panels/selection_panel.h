@@ -68,6 +68,7 @@ class SelectionPanel : public LazyPanel {
     QLabel* mCounts;
     std::vector<QPushButton*> mNeedMesh;       // what can be used where there are patches
     std::vector<QPushButton*> mNeedSelection;  // and where some are selected
+    QPushButton* mNone = nullptr;              // and where anything is
     StoredList* mStored = nullptr;
     QLabel* mStoredHint = nullptr;
 };
