@@ -81,12 +81,12 @@ FitPicture::FitPicture(const PatchMesh& mesh, double termsPerPatch, const Image&
 }
 
 int squaresPerSide(const PatchMesh& mesh, double termsPerPatch) {
-    constexpr double kSquaresPerSite = 2.5;
-    constexpr int kMost = 3;
-    const double wanted =
-        kSquaresPerSite * double(candidateSites(termsPerPatch).size()) * double(mesh.patchCount());
+    // Measured: with fewer places than the one most patches are wide, with fewer than the other finer squares
+    // take their time and give nothing.
+    constexpr double kPlacesForTwo = .25, kPlacesForThree = 1.6;  // a pixel
+    const double places = double(candidateSites(termsPerPatch).size()) * double(mesh.patchCount());
     const double pixels = double(mesh.width()) * mesh.height();
-    return std::clamp(int(std::ceil(std::sqrt(wanted / pixels))), 1, kMost);
+    return places <= kPlacesForTwo * pixels ? 1 : places <= kPlacesForThree * pixels ? 2 : 3;
 }
 
 }  // namespace tessera

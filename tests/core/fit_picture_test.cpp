@@ -13,6 +13,7 @@
 #include "core/vectorize/solve_colors.h"
 #include "core/vectorize/vectorize.h"
 #include "tests/support/painted_image.h"
+#include "tests/support/test_meshes.h"
 
 namespace tessera {
 namespace {
@@ -111,9 +112,13 @@ TEST(FitPicture, PatchesShareOutEachCellsSamples) {
 }
 
 TEST(FitPicture, SquaresGoWithPatchesAndTerms) {
-    const PatchMesh mesh = halves(false);  // 128 px a patch
-    EXPECT_EQ(squaresPerSide(mesh, kManyTerms), 2);
-    EXPECT_EQ(squaresPerSide(mesh, 12), 1);  // few terms have few places
+    const auto squares = [](int cellsPerSide, double termsPerPatch) {
+        return squaresPerSide(testing::gridMesh(240, 240, cellsPerSide, cellsPerSide), termsPerPatch);
+    };
+    EXPECT_EQ(squares(20, kManyTerms), 3);  // 72 px a patch
+    EXPECT_EQ(squares(8, kManyTerms), 2);   // 450 px
+    EXPECT_EQ(squares(6, kManyTerms), 1);   // 800 px
+    EXPECT_EQ(squares(8, 12), 1);           // few terms have few places
 }
 
 // How well splines that were fitted to a small picture's pixels, or to parts of them, show the large one.
