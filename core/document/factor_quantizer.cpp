@@ -14,8 +14,6 @@ namespace {
 constexpr uint8_t kCorners = 3;
 // The trapezoidal rule on the lattice makes the functions larger than they are; measured.
 constexpr double kTrueShare = .93;
-// Up to so many factors their norms are soon known, and cells foretell them badly.
-constexpr size_t kFewFactors = 24;
 constexpr double kLeastArea = 1.0 / 16, kLargestArea = 16;
 
 // Whether the spline is what its values at the sites make it: its side conditions hold up to what the floats
@@ -118,14 +116,11 @@ FactorBasis::FactorBasis(uint32_t version, const FactorColour& colour, int chann
     : mBasis(SiteLattice::ofVersion(version), colour.sites, colour.counts) {
     const bool foretells = version >= kForetoldNormsVersion;
     if (!foretells) mOnBorder = mBasis.functionsAt(mBasis.lattice().border(), size_t(mBasis.size()));
-    const size_t few = foretells ? kFewFactors : kCentreSites;
-    size_t most = 0;
-    for (const uint8_t count : std::span(colour.counts).first(size_t(channels)))
-        if (count <= few) most = std::max<size_t>(most, count);
-    const SiteProducts products(mBasis, most);
+    std::optional<SiteProducts> products;
+    if (!foretells) products.emplace(mBasis, size_t(mBasis.size()));
     for (const uint8_t count : std::span(colour.counts).first(size_t(channels))) {
         std::vector<double> steps =
-            count <= few ? products.norms(count).diagonal() : foretoldNorms(mBasis, count);
+            foretells ? foretoldNorms(mBasis, count) : products->norms(count).diagonal();
         for (double& s : steps) s = step / std::sqrt(area) / s;
         mSteps.push_back(std::move(steps));
     }

@@ -6,7 +6,7 @@
 namespace tessera {
 
 constexpr uint32_t kFormatVersion = 4;
-// From this version on the step of one of many factors follows from where the sites lie, not from its norm.
+// From this version on the step of a factor follows from where the sites lie, not from its norm.
 constexpr uint32_t kForetoldNormsVersion = 4;
 
 }  // namespace tessera

@@ -32,7 +32,7 @@ class SiteProducts {
     std::vector<double> mProducts;  // row by row
 };
 
-// What T(k, k) is about where there are many sites, from where the first n of them lie alone.
+// What T(k, k) is about, from where the first n sites lie alone.
 std::vector<double> foretoldNorms(const SiteBasis& basis, size_t n);
 
 }  // namespace tessera
