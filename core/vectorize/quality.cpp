@@ -20,7 +20,7 @@ struct Preset {
 
 const VectorizeSettings kUsual;
 const std::array kPresets{
-    Preset{"draft", 1.3, 0, 30, 1, true},
+    Preset{"draft", kUsual.initialSurplus, 0, 30, 1, true},
     Preset{"standard", kUsual.initialSurplus, kUsual.refineRounds, kUsual.termsPerPatch, kUsual.seamPasses,
            false},
     Preset{"fine", 2, 8, 84, 4, false},
