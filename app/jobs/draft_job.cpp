@@ -23,7 +23,7 @@ Result<Ladder> buildLadder(const Image& photo, VectorizeSettings settings, Progr
     const Result<void> draft = applyPreset(settings, "draft");
     TESSERA_CHECK(draft.has_value());
     settings.patches = std::max(settings.patches, kLeastPatches);
-    settings.initialSurplus = std::max(2., kLeastInitialPatches / settings.patches);
+    settings.initialSurplus = std::max(settings.initialSurplus, kLeastInitialPatches / settings.patches);
     const auto& stages = stageTable(settings.method);
     const double untilThen = stages[0].weight + stages[1].weight;
     std::stop_source enough;

@@ -79,8 +79,8 @@ class SiteLattice {
 class SiteBasis {
   public:
     // `sites` of the lattice, which must outlive this, begin with the corners 0, 1, 2 and are all different.
-    // The first counts[c] of them are those of
-    // channel c; sites that belong to the same channels may come in any order.
+    // The first counts[c] of them are those of channel c; sites that belong to the same channels may come in
+    // any order.
     SiteBasis(const SiteLattice& lattice, std::span<const uint8_t> sites, std::span<const uint8_t> counts);
 
     int size() const { return int(mSites.size()); }
@@ -111,8 +111,8 @@ class SiteBasis {
     const SiteLattice* mLattice;
     std::vector<uint8_t> mSites;
     std::vector<double> mAtSites;  // before(k), one after another
-    std::vector<double>
-        mPowers;  // what the functions before k leave of the kernel at site k; 0 at the corners
+    // What the functions before k leave of the kernel at site k; 0 at the corners.
+    std::vector<double> mPowers;
 };
 
 }  // namespace tessera

@@ -124,48 +124,39 @@ void NewtonBasis::combine(const double* terms, size_t stride, size_t points, Tak
 }
 
 void NewtonBasis::evaluate(const float* x, const float* y, size_t count, float* out, size_t stride) const {
-    TESSERA_CHECK(count <= stride);
-    // What the coefficients are of: 1, x, y, and the kernels about the centres.
-    std::vector<double> terms((kPolynomials + mSites.size()) * kBlock, 0);
-    for (size_t first = 0; first < count; first += kBlock) {
-        const size_t points = std::min(kBlock, count - first);
-        for (size_t i = 0; i < points; ++i) {
-            terms[i] = 1;
-            terms[kBlock + i] = double(x[first + i]);
-            terms[2 * kBlock + i] = double(y[first + i]);
-        }
-        evaluateKernels(mCentres, x + first, y + first, points, &terms[kPolynomials * kBlock], kBlock);
-        combine(terms.data(), kBlock, roundUp(points, kPointsAtOnce), [&](size_t k, const double* values) {
-            for (size_t i = 0; i < points; ++i) out[k * stride + first + i] = float(values[i]);
-        });
-    }
+    std::vector<uint32_t> each(count + 1);
+    std::iota(each.begin(), each.end(), 0U);
+    evaluateSums(x, y, each, out, stride);
 }
 
 void NewtonBasis::evaluateSums(const float* x, const float* y, std::span<const uint32_t> firstPoint,
                                float* out, size_t stride) const {
     const size_t groups = firstPoint.size() - 1;
     TESSERA_CHECK(groups <= stride);
-    // What the coefficients are of, summed before they are combined: that is most of the work.
+    // What the coefficients are of, 1, x, y and the kernels about the centres, summed before they are
+    // combined: that is most of the work.
     std::vector<double> terms((kPolynomials + mSites.size()) * kBlock, 0), kernels;
     for (size_t first = 0; first < groups; first += kBlock) {
         const std::span<const uint32_t> starts =
             firstPoint.subspan(first, std::min(kBlock, groups - first) + 1);
         const size_t begin = starts.front(), points = starts.back() - begin;
-        kernels.resize(mSites.size() * points);
-        evaluateKernels(mCentres, x + begin, y + begin, points, kernels.data(), points);
         for (size_t g = 0; g + 1 < starts.size(); ++g) {
             terms[g] = double(starts[g + 1] - starts[g]);
             terms[kBlock + g] = std::accumulate(x + starts[g], x + starts[g + 1], 0.0);
             terms[2 * kBlock + g] = std::accumulate(y + starts[g], y + starts[g + 1], 0.0);
         }
-        for (size_t j = 0; j < mSites.size(); ++j) {
-            const double* kernel = &kernels[j * points];
-            double* sums = &terms[(kPolynomials + j) * kBlock];
-            for (size_t g = 0; g + 1 < starts.size(); ++g) {
-                double sum = 0;
-                for (size_t i = starts[g]; i < starts[g + 1]; ++i) sum += kernel[i - begin];
-                sums[g] = sum;
-            }
+        double* sums = &terms[kPolynomials * kBlock];
+        if (points + 1 == starts.size()) {  // one each
+            evaluateKernels(mCentres, x + begin, y + begin, points, sums, kBlock);
+        } else {
+            kernels.resize(mSites.size() * points);
+            evaluateKernels(mCentres, x + begin, y + begin, points, kernels.data(), points);
+            for (size_t j = 0; j < mSites.size(); ++j)
+                for (size_t g = 0; g + 1 < starts.size(); ++g) {
+                    const double* kernel = &kernels[j * points];
+                    sums[j * kBlock + g] =
+                        std::accumulate(kernel + (starts[g] - begin), kernel + (starts[g + 1] - begin), 0.0);
+                }
         }
         combine(terms.data(), kBlock, roundUp(starts.size() - 1, kPointsAtOnce),
                 [&](size_t k, const double* values) {

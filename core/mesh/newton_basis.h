@@ -29,7 +29,7 @@ class NewtonBasis {
 
     // The functions at `count` points of the domain, rounded: out[k * stride + i] is function k at point i.
     void evaluate(const float* x, const float* y, size_t count, float* out, size_t stride) const;
-    // Their sums over groups of points, group g from firstPoint[g] to firstPoint[g + 1]:
+    // Their sums over groups of points, none of them empty, group g from firstPoint[g] to firstPoint[g + 1]:
     // out[k * stride + g], of one group fewer than there are numbers.
     void evaluateSums(const float* x, const float* y, std::span<const uint32_t> firstPoint, float* out,
                       size_t stride) const;
