@@ -157,6 +157,18 @@ std::optional<LatticePoint> certifiedInterior(const LatticeTriangle& t) {
     return std::nullopt;
 }
 
+bool certifiedIfStraight(LatticePoint a, LatticePoint b, LatticePoint c) {
+    // Rounding moves the points of the sides by at most r = sqrt(1/2) steps and the default interior point by
+    // 3/2 r + r, so that differences of two of them are within 7/2 r of thirds of the sides s and t. Their
+    // products are then at least |s x t| / 9 - 7/2 r (|s| + |t|) / 3 - (7/2 r)^2: positive where the height
+    // over the longest side, of L steps, is more than 14.9 + 55 / L.
+    constexpr double kLeastHeight = .1 * kLatticePerPixel;
+    const auto squared = [](LatticePoint d) { return double(d.x) * d.x + double(d.y) * d.y; };
+    const auto area2 = double(cross(b - a, c - a));
+    const double longest = std::max({squared(b - a), squared(c - b), squared(a - c)});
+    return area2 > 0 && area2 * area2 >= kLeastHeight * kLeastHeight * longest;
+}
+
 std::optional<LatticePoint> certifiedDefaultInterior(const LatticeTriangle& t) {
     constexpr size_t kRing = 9;
     const auto before = [](LatticePoint a, LatticePoint b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };

@@ -40,4 +40,8 @@ std::optional<LatticePoint> certifiedInterior(const LatticeTriangle& t);
 // on which corner comes first.
 std::optional<LatticePoint> certifiedDefaultInterior(const LatticeTriangle& t);
 
+// Whether the triangle of these corners is so high over its longest side that a patch with straight sides,
+// whose control points are thirds rounded to the lattice, is certified. No such patch needs a test then.
+bool certifiedIfStraight(LatticePoint a, LatticePoint b, LatticePoint c);
+
 }  // namespace tessera

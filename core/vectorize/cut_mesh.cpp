@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <set>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -101,35 +103,100 @@ std::vector<uint8_t> keptFree(const FeatureNetwork& network, int width, int heig
     return taken;
 }
 
-// Error diffusion (Floyd and Steinberg 1976) row by row, back and forth: pixels that get a point.
-std::vector<LatticePoint> diffuse(const std::vector<float>& density, const std::vector<uint8_t>& taken,
-                                  int width, int height, double points) {
-    double sum = 0;
-    for (size_t i = 0; i < density.size(); ++i) sum += taken[i] ? 0 : double(density[i]);
-    const double scale = sum > 0 ? points / sum : 0;
-    std::vector<double> row(size_t(width) + 2, 0), next(row);
-    std::vector<LatticePoint> result;
-    for (int y = 0; y < height; ++y) {
-        const int step = y % 2 == 0 ? 1 : -1;
-        for (int k = 0; k < width; ++k) {
-            const int x = step > 0 ? k : width - 1 - k;
-            const size_t i = size_t(y) * size_t(width) + size_t(x), at = size_t(x) + 1;
-            const double value = taken[i] ? row[at] : row[at] + scale * double(density[i]);
-            const bool chosen = value >= .5 && !taken[i];
-            if (chosen)
-                result.push_back({x * kLatticePerPixel + kLatticePerPixel / 2,
-                                  y * kLatticePerPixel + kLatticePerPixel / 2});
-            const double error = value - (chosen ? 1 : 0);
-            row[size_t(int(at) + step)] += 7 / 16.0 * error;
-            next[size_t(int(at) - step)] += 3 / 16.0 * error;
-            next[at] += 5 / 16.0 * error;
-            next[size_t(int(at) + step)] += 1 / 16.0 * error;
-        }
-        row.swap(next);
-        std::fill(next.begin(), next.end(), 0);
+// A picture's points by error diffusion (Floyd and Steinberg 1976), over square cells so large that about one
+// in sixteen gets a point: over pixels, points this sparse would come in rows of waves.
+class PointScatter {
+  public:
+    // Pixels that are `taken` get none.
+    PointScatter(std::vector<float> density, const std::vector<uint8_t>& taken, int width, int height,
+                 double wanted)
+        : mDensity(std::move(density)),
+          mWidth(width),
+          mHeight(height),
+          mWanted(wanted),
+          mCell(std::max(1, int(std::sqrt(double(width) * height / std::max(1.0, wanted)) / kCellsApart))),
+          mColumns((width + mCell - 1) / mCell),
+          mRows((height + mCell - 1) / mCell),
+          mSums(size_t(mColumns) * size_t(mRows), 0) {
+        for (size_t i = 0; i < mDensity.size(); ++i)
+            if (taken[i]) mDensity[i] = 0;
+        for (int y = 0; y < mHeight; ++y)
+            for (int x = 0; x < mWidth; ++x)
+                mSums[size_t(y / mCell) * size_t(mColumns) + size_t(x / mCell)] += double(at(x, y));
     }
-    return result;
-}
+
+    // About as many as are wanted.
+    std::vector<LatticePoint> points() const {
+        constexpr int kTries = 3;
+        constexpr double kOff = .03;
+        const double sum = std::accumulate(mSums.begin(), mSums.end(), 0.0);
+        if (sum <= 0) return {};
+        double scale = mWanted / sum;
+        std::vector<size_t> cells = diffused(scale);
+        for (int i = 1; i < kTries && std::abs(double(cells.size()) - mWanted) > kOff * mWanted + 1; ++i) {
+            scale *= mWanted / std::max(1.0, double(cells.size()));
+            cells = diffused(scale);
+        }
+        std::vector<LatticePoint> points;
+        for (const size_t cell : cells) points.push_back(pointIn(cell));
+        return points;
+    }
+
+  private:
+    static constexpr double kCellsApart = 4;
+
+    float at(int x, int y) const { return mDensity[size_t(y) * size_t(mWidth) + size_t(x)]; }
+
+    // Row by row, back and forth; the cells chosen. The errors that the first row begins with are those of
+    // some rows above, mirrored.
+    std::vector<size_t> diffused(double scale) const {
+        constexpr int kRunIn = 16;
+        std::vector<double> row(size_t(mColumns) + 2, 0), next(row);
+        std::vector<size_t> chosen;
+        for (int y = -std::min(kRunIn, mRows); y < mRows; ++y) {
+            const size_t first = size_t(y < 0 ? -1 - y : y) * size_t(mColumns);
+            const int step = y % 2 == 0 ? 1 : -1;
+            for (int k = 0; k < mColumns; ++k) {
+                const auto x = size_t(step > 0 ? k : mColumns - 1 - k), in = x + 1;
+                const double deserved = scale * mSums[first + x], value = row[in] + deserved;
+                const bool taken = value >= .5 && deserved > 0;
+                if (taken && y >= 0) chosen.push_back(first + x);
+                const double error = value - (taken ? 1 : 0);
+                row[size_t(int(in) + step)] += 7 / 16.0 * error;
+                next[size_t(int(in) - step)] += 3 / 16.0 * error;
+                next[in] += 5 / 16.0 * error;
+                next[size_t(int(in) + step)] += 1 / 16.0 * error;
+            }
+            // What has left at an end comes back in.
+            const size_t last = size_t(mColumns);
+            next[1] += next[0] + (step < 0 ? row[0] : 0);
+            next[last] += next[last + 1] + (step > 0 ? row[last + 1] : 0);
+            row.swap(next);
+            std::fill(next.begin(), next.end(), 0);
+        }
+        return chosen;
+    }
+
+    // The middle of the pixel that deserves most.
+    LatticePoint pointIn(size_t cell) const {
+        const int x0 = int(cell % size_t(mColumns)) * mCell, y0 = int(cell / size_t(mColumns)) * mCell;
+        int bestX = x0, bestY = y0;
+        for (int y = y0; y < std::min(mHeight, y0 + mCell); ++y)
+            for (int x = x0; x < std::min(mWidth, x0 + mCell); ++x)
+                if (at(x, y) > at(bestX, bestY)) {
+                    bestX = x;
+                    bestY = y;
+                }
+        return {bestX * kLatticePerPixel + kLatticePerPixel / 2,
+                bestY * kLatticePerPixel + kLatticePerPixel / 2};
+    }
+
+    std::vector<float> mDensity;  // by pixel, 0 where it is taken
+    int mWidth, mHeight;
+    double mWanted;
+    int mCell, mColumns, mRows;  // px; cells
+    std::vector<double> mSums;   // by cell
+};
 
 // Points on the picture's sides, about as far apart as those inside.
 std::vector<LatticePoint> borderPoints(int width, int height, double points) {
@@ -146,6 +213,27 @@ std::vector<LatticePoint> borderPoints(int width, int height, double points) {
 
 bool curved(const CutMesh& cut, HalfedgeId h) {
     return cut.curve(HalfedgeMesh::edge(h)) != nullptr;
+}
+
+bool thin(const CutMesh& cut, FaceId f) {
+    const auto c = cut.mesh.corners(f);
+    return !certifiedIfStraight(cut.positions[c[0].index], cut.positions[c[1].index],
+                                cut.positions[c[2].index]);
+}
+
+// Takes away the points at the corners of thin faces or, where those are all nodes, the segments there.
+// False where there is nothing to take away.
+bool removeThin(const CutMesh& cut, FeatureNetwork& network, std::vector<LatticePoint>& points) {
+    std::set<LatticePoint> corners;
+    for (uint32_t f = 0; f < cut.mesh.faceCapacity(); ++f)
+        if (thin(cut, FaceId(f)))
+            for (const VertexId v : cut.mesh.corners(FaceId(f))) corners.insert(cut.positions[v.index]);
+    if (corners.empty()) return false;
+    const auto atThin = [&](LatticePoint p) { return corners.contains(p); };
+    if (std::erase_if(points, atThin) > 0) return true;
+    return std::erase_if(network.segments, [&](const FeatureSegment& s) {
+               return atThin(network.nodes[s.from].position) || atThin(network.nodes[s.to].position);
+           }) > 0;
 }
 
 // The curves beside patches that have no certified interior point, ascending.
@@ -210,12 +298,11 @@ bool halveUnsound(const CutMesh& cut, FeatureNetwork& network, double toleranceP
 }
 
 // Where a curve still leaves a patch beside it without a certificate it is pulled toward its chord, in the
-// end onto it, which always has one.
+// end onto it, which has one: no face is thin. How many were pulled.
 size_t straighten(CutMesh& cut) {
     constexpr int kPulls = 4;
     std::vector<int> pulls(cut.curves.size(), 0);
-    while (true) {
-        const std::vector<uint32_t> bad = unsoundCurves(cut);
+    for (std::vector<uint32_t> bad = unsoundCurves(cut); !bad.empty(); bad = unsoundCurves(cut))
         for (const uint32_t i : bad) {
             CutCurve& c = cut.curves[i];
             ++pulls[i];
@@ -225,8 +312,6 @@ size_t straighten(CutMesh& cut) {
                                                 : LatticePoint{(c.inner[k].x + chord[k].x) / 2,
                                                                (c.inner[k].y + chord[k].y) / 2};
         }
-        if (bad.empty()) break;
-    }
     return size_t(std::count_if(pulls.begin(), pulls.end(), [](int n) { return n > 0; }));
 }
 
@@ -243,8 +328,11 @@ CutMesh triangulate(const FeatureNetwork& network, const std::vector<LatticePoin
     cut.chains = network.chains;
     const LatticePoint extent{cut.width * kLatticePerPixel, cut.height * kLatticePerPixel};
     Delaunay delaunay(extent);
-    std::vector<VertexId> vertexOfNode;
-    for (const FeatureNode& node : network.nodes) vertexOfNode.push_back(delaunay.insert(node.position));
+    std::vector<bool> used(network.nodes.size(), false);
+    for (const FeatureSegment& s : network.segments) used[s.from] = used[s.to] = true;
+    std::vector<VertexId> vertexOfNode(network.nodes.size());
+    for (size_t i = 0; i < used.size(); ++i)
+        if (used[i]) vertexOfNode[i] = delaunay.insert(network.nodes[i].position);
     refused = 0;
     for (const FeatureSegment& s : network.segments) {
         const VertexId a = vertexOfNode[s.from], b = vertexOfNode[s.to];
@@ -286,16 +374,21 @@ Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, 
     constexpr int kHalvings = 4;
     const int width = sharp.width(), height = sharp.height();
     FeatureNetwork halved = network;
-    const double wanted = std::max(0.0, double(faces) / 2 - double(network.nodes.size()));
     std::vector<LatticePoint> points = borderPoints(width, height, double(faces) / 2);
-    const auto inside = diffuse(richness(sharp), keptFree(network, width, height), width, height, wanted);
+    // Euler: of V vertices, B of them on the border, there are 2 V - B - 2 faces.
+    constexpr int kCorners = 4;
+    const double onBorder = double(points.size()) + kCorners;
+    const double wanted = std::max(0.0, (double(faces) + 2 - onBorder) / 2 - double(network.nodes.size()));
+    const auto inside =
+        PointScatter(richness(sharp), keptFree(network, width, height), width, height, wanted).points();
     points.insert(points.end(), inside.begin(), inside.end());
     size_t refused = 0;
     CutMesh cut;
-    for (int round = 0; round <= kHalvings; ++round) {
+    for (int halvings = 0;;) {
         cut = triangulate(halved, points, refused, progress);
         if (!progress.step(.9)) return stopped();
-        if (round == kHalvings || !halveUnsound(cut, halved, settings.featureTolerancePx)) break;
+        if (removeThin(cut, halved, points)) continue;  // each time there is less
+        if (halvings++ == kHalvings || !halveUnsound(cut, halved, settings.featureTolerancePx)) break;
     }
     const size_t straightened = straighten(cut);
     report.figures = {{"faces", double(cut.mesh.faceCount())},

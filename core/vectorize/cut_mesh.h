@@ -29,7 +29,7 @@ struct CutCurve {
     std::array<LatticePoint, 4> controlPoints(VertexId a, const std::vector<LatticePoint>& positions) const;
 };
 
-// Every face is a triangle of positive area which, with its curved sides, has a certified interior point.
+// Every face has a certified interior point, with its curved sides and with chords in place of them.
 struct CutMesh {
     int width = 0, height = 0;  // px
     HalfedgeMesh mesh;
@@ -49,7 +49,8 @@ struct CutMesh {
 // Stage "initial-mesh", variant "delaunay": the constrained Delaunay triangulation of the network's nodes and
 // of points as dense as `sharp` is rich (error diffusion, Yang et al. 2003), about `faces` triangles.
 // Segments whose curves leave a patch beside them without a certificate are halved, and pulled toward their
-// chords where that does not help.
+// chords where that does not help. Points of faces too thin for a certificate are left out, and segments
+// where their nodes alone make such a face.
 Result<CutMesh> buildCutMesh(const Image& sharp, const FeatureNetwork& network, size_t faces,
                              const VectorizeSettings& settings, StageReport& report, Progress& progress);
 

@@ -123,6 +123,7 @@ double Refiner::error(const Triangle& t) const {
 
 bool Refiner::valid(const Triangle& t, double least) const {
     if (shape(t.corners[0], t.corners[1], t.corners[2]) < least) return false;
+    if (!certifiedIfStraight(t.corners[0], t.corners[1], t.corners[2])) return false;
     if (!t.curves[0] && !t.curves[1] && !t.curves[2]) return true;
     LatticeTriangle patch;
     for (size_t k = 0; k < 3; ++k) {
@@ -564,9 +565,13 @@ Result<CutMesh> refine(CutMesh cut, const PolynomialFit& fit, const VectorizeSet
         }
     }
     report.figures = {{"patches", double(refiner.faceCount())}};
+    constexpr double kEnough = .9;  // of the patches wanted
     if (refiner.faceCount() > wanted)
         shortfall = "features pin the mesh at " + std::to_string(refiner.faceCount()) +
                     " patches; ask for fewer features to go below";
+    else if (double(refiner.faceCount()) < kEnough * double(wanted))
+        shortfall = "there is room for " + std::to_string(refiner.faceCount()) +
+                    " patches only: smaller ones would hardly cover a pixel";
     return cut;
 }
 

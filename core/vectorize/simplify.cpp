@@ -31,8 +31,6 @@ CollapseRule collapseRule(VertexKind from, VertexKind to) {
 
 namespace {
 
-// A straight triangle flatter than this is as good as folded: rounding to the lattice could turn it over.
-constexpr double kMinHeightPx = .1;
 // After this many failures an edge waits until a contraction beside it changes its surroundings.
 constexpr uint8_t kMaxFailures = 4;
 // Contractions below this error (a sixtieth of a level over a pixel) go on past the wanted number: a flat
@@ -316,13 +314,7 @@ bool Simplifier::faceValid(const std::array<VertexId, 3>& corners, const std::ar
                            const Refit* refit) const {
     const LatticePoint a = m.positions[corners[0].index], b = m.positions[corners[1].index],
                        c = m.positions[corners[2].index];
-    const int64_t area2 = cross(b - a, c - a);
-    if (area2 <= 0) return false;
-    const auto squared = [](LatticePoint d) { return double(d.x) * d.x + double(d.y) * d.y; };
-    const double longest = std::max({squared(b - a), squared(c - b), squared(a - c)});
-    const double minHeight = kMinHeightPx * kLatticePerPixel;
-    if (double(area2) * double(area2) < minHeight * minHeight * longest) return false;
-
+    if (!certifiedIfStraight(a, b, c)) return false;
     bool curved = false;
     for (const EdgeId e : sides)
         curved = curved || m.isFeature(e) || (refit && e == HalfedgeMesh::edge(refit->before));

@@ -173,6 +173,11 @@ void spend(const PatchMesh& mesh, const std::vector<Offers>& offers, double budg
     };
     constexpr int kBisections = 40;
     double low = 1e-9, high = 10;
+    for (const Offers& own : offers)  // at the price of the best bargain nothing more is bought
+        for (const std::vector<Offer>& channel : own)
+            if (channel.size() > 1)
+                high = std::max(high, double(channel[0].error - channel[1].error) /
+                                          (channel[1].terms - channel[0].terms));
     for (int i = 0; i < kBisections; ++i) {
         const double middle = std::sqrt(low * high);
         (choose(middle) > budget ? low : high) = middle;

@@ -18,7 +18,7 @@ struct SiteChoice {
 };
 
 // By patch id. A channel of a patch has no more terms than there are sites, nor than the patch has of its
-// pixels; over all channels termsPerPatch on the average, at most. `picture`, the mesh's or that enlarged by
+// pixels, but three at least; over all channels termsPerPatch on the average, at most. `picture`, the mesh's or that enlarged by
 // a whole factor, is in the mesh's basis and has hard steps at features. Empty where progress says stop.
 std::vector<SiteChoice> chooseSites(const PatchMesh& mesh, const Image& picture, double termsPerPatch,
                                     const ProgressPart& progress);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "tests/support/blurred_shapes.h"
 #include "tests/support/cut_meshes.h"
@@ -54,6 +55,55 @@ TEST(CutMesh, OfFlatPicturesIsEven) {
         for (const LatticePoint p : cut.positions) ++(p.x < 30 * kLatticePerPixel ? left : right);
         EXPECT_NEAR(left, right, 10);
     }
+}
+
+TEST(CutMesh, HasAboutTheFacesThatAreWanted) {
+    for (const auto& [width, height] : {std::pair{600, 400}, {90, 700}}) {
+        const Image image(width, height, 3, .4f);
+        for (const size_t faces : {20, 60, 300, 5000})
+            EXPECT_NEAR(double(build(image, noFeatures(image), faces).mesh.faceCount()) / double(faces), 1,
+                        .2)
+                << width << "x" << height << ' ' << faces;
+    }
+}
+
+// A feature from (x, 0) straight down.
+FeatureNetwork oneFeature(int width, int height, LatticePoint top) {
+    FeatureNetwork network{width, height, {}, {}, {}};
+    FeatureChain chain;
+    constexpr int kSteps = 12;
+    for (int i = 0; i <= kSteps; ++i) {
+        FeaturePoint point;
+        point.position = toPixels(top) + glm::dvec2(0, i);
+        chain.points.push_back(point);
+    }
+    chain.ends = {ChainEnd::Border, ChainEnd::Tip};
+    const LatticePoint bottom{top.x, kSteps * kLatticePerPixel};
+    network.chains = {chain};
+    network.nodes = {{top, FeatureNodeKind::Border}, {bottom, FeatureNodeKind::Tip}};
+    network.segments = {{0, 1, 0, 0, kSteps, straightControlPoints(top, bottom), {.5F, .5F}}};
+    return network;
+}
+
+// A point of the border that lies beside the feature's end makes a face that rounding would fold.
+TEST(CutMesh, LeavesOutPointsThatMakeThinFaces) {
+    const Image image(60, 40, 3, .4f);
+    std::set<int> onTop;
+    for (const LatticePoint p : build(image, noFeatures(image), 200).positions)
+        if (p.y == 0) onTop.insert(p.x);
+    ASSERT_GT(onTop.size(), 4U);
+    const int beside = *std::next(onTop.begin(), 3);
+    for (const int steps : {1, 2, 5, 30}) {
+        const LatticePoint top{beside + steps, 0};
+        const CutMesh cut = build(image, oneFeature(60, 40, top), 200);
+        EXPECT_THAT(cutMeshViolations(cut, kTolerancePx), IsEmpty()) << steps;
+        EXPECT_EQ(cut.curves.size(), 1U) << steps;
+        EXPECT_TRUE(validate(toPatchMesh(cut, 3)).valid());
+    }
+    // Beside the picture's corner it is the feature that goes.
+    const CutMesh cut = build(image, oneFeature(60, 40, {1, 0}), 200);
+    EXPECT_THAT(cutMeshViolations(cut, kTolerancePx), IsEmpty());
+    EXPECT_TRUE(cut.curves.empty());
 }
 
 TEST(CutMesh, HasMorePointsWhereThePictureIsRich) {

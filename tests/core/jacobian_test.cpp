@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/mesh/patch_mesh.h"
+
 namespace tessera {
 namespace {
 
@@ -94,6 +96,49 @@ TEST(Certified, StraightTriangles) {
     EXPECT_FALSE(certified(affine({0, 0}, {0, 9}, {9, 0}))) << "negative orientation";
     EXPECT_FALSE(certified(affine({0, 0}, {9, 0}, {18, 0}))) << "no area";
     EXPECT_EQ(minBernstein(affine({0, 0}, {0, 9}, {9, 0})), -1);
+}
+
+LatticeTriangle straight(LatticePoint a, LatticePoint b, LatticePoint c) {
+    LatticeTriangle t;
+    size_t k = 0;
+    for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}}) {
+        const auto inner = straightControlPoints(from, to);
+        for (const LatticePoint p : {from, inner[0], inner[1]}) t.p[k++] = p;
+    }
+    return t;
+}
+
+TEST(CertifiedIfStraight, HoldsForTrianglesJustHighEnough) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int low = 0, high = 0;
+    for (int i = 0; i < 20000; ++i) {
+        // From a base as short as the height to one of 1000 px.
+        const double base = 30 * std::pow(8500, unit(random)), height = 20 + 10 * unit(random);
+        const double angle = 6.3 * unit(random), foot = base * unit(random);
+        const glm::dvec2 along(std::cos(angle), std::sin(angle)), up(-along.y, along.x);
+        const auto at = [&](double x, double y) {
+            return toLattice((x * along + y * up) / double(kLatticePerPixel));
+        };
+        const LatticePoint a = at(0, 0), b = at(base, 0), c = at(foot, height);
+        const LatticeTriangle t = straight(a, b, c);
+        if (!certifiedIfStraight(a, b, c)) {
+            ++low;
+            continue;
+        }
+        ++high;
+        LatticeTriangle usual = t;
+        usual.p[kInterior] = toLattice(defaultInterior(toPixels(t)));
+        EXPECT_TRUE(certified(usual)) << base << ' ' << height << ' ' << angle;
+    }
+    EXPECT_GT(low, 5000);
+    EXPECT_GT(high, 5000);
+}
+
+TEST(CertifiedIfStraight, RefusesWhatRoundingFolds) {
+    EXPECT_FALSE(certifiedIfStraight({0, 0}, {1, 0}, {0, 900}));
+    EXPECT_FALSE(certifiedDefaultInterior(straight({0, 0}, {1, 0}, {0, 900})));
+    EXPECT_FALSE(certifiedIfStraight({0, 0}, {0, 900}, {900, 0})) << "negative orientation";
 }
 
 // x' has the Bernstein coefficients 3 (4, -3, 4); its least value, in the middle, is a quarter of (1, 2, 1)

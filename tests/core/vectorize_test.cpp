@@ -206,11 +206,28 @@ TEST_P(Vectorize, TheSmallestPictures) {
         const Image busy = paint(w, h, 4, [](double x, double y, int c) {
             return c == 3 ? 1.0 : std::fmod(.618 * x + .37 * y + .2 * c, 1.0);
         });
-        for (const int patches : {2, 40, 2000}) {
+        for (const int patches : {2, 40, 2000, 20000}) {
             const VectorImage detailed = run(busy, wanted(patches));
             EXPECT_THAT(validate(detailed.mesh).violations, IsEmpty()) << w << 'x' << h << ' ' << patches;
         }
     }
+}
+
+TEST(VectorizeUsage, TellsWhereThereIsNoRoomForThePatches) {
+    const VectorImage result = run(scene(16, 16), wanting(2000));
+    EXPECT_LT(result.mesh.patchCount(), 1000U);
+    EXPECT_THAT(result.report.shortfall, HasSubstr("room for " + std::to_string(result.mesh.patchCount())));
+}
+
+TEST(VectorizeUsage, FewPatchesOfAWidePictureKeepTheirBudget) {
+    VectorizeSettings settings = wanting(20);
+    settings.termsPerPatch = 12;
+    const VectorImage result = run(scene(400, 300), settings);
+    double terms = 0;
+    for (const auto& [name, value] : result.report.stages.back().figures)
+        if (name == "terms") terms = value;
+    EXPECT_GT(terms, 0);
+    EXPECT_LE(terms, 12.0 * double(result.mesh.patchCount()));
 }
 
 // Values that 8-bit pictures do not have: HDR is not clamped, and alpha of 0 is a colour like others.

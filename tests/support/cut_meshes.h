@@ -54,7 +54,7 @@ inline double furthestOffChain(const CutMesh& cut) {
     return worst;
 }
 
-// Empty where connectivity is sound, faces are positive, certified and cover the picture, edges with curves
+// Empty where connectivity is sound, faces are positive, not thin, certified and cover the picture, edges with curves
 // are those between the curves' ends, and curves stay within tolerancePx of their chains.
 inline std::vector<std::string> cutMeshViolations(const CutMesh& cut, double tolerancePx) {
     std::vector<std::string> found = connectivityViolations(cut.mesh);
@@ -69,6 +69,8 @@ inline std::vector<std::string> cutMeshViolations(const CutMesh& cut, double tol
         const int64_t twice = cross(cut.positions[c[1].index] - a, cut.positions[c[2].index] - a);
         area += twice;
         if (twice <= 0) say("no area: face", f);
+        if (!certifiedIfStraight(a, cut.positions[c[1].index], cut.positions[c[2].index]))
+            say("too thin: face", f);
         if (!certifiedInterior(patchOf(cut, FaceId(f)))) say("no certificate: face", f);
     }
     constexpr int64_t kUnit = kLatticePerPixel;
