@@ -60,7 +60,7 @@ std::optional<CurveHit> BlurTool::featureAt(const ToolEvent& event) const {
     // A soft feature is taken hold of as far as its handle.
     std::optional<CurveHit> nearest;
     double best = 0;
-    const double reach = radius + kReach * kMostEditedBlurPx;
+    const double reach = radius + kReach * kWidestBlurPx;
     for (const PatchId p : session().query().patchesIn({event.point - reach, event.point + reach}))
         for (const HalfedgeId h : mesh().connectivity().sides(p)) {
             const EdgeId e = HalfedgeMesh::edge(h);
@@ -100,7 +100,7 @@ void BlurTool::dragged(const ToolEvent& event) {
     const EdgeCurve& curve = mEdit->start().curve(mHeld->edge);
     const double distance = nearestOnCurve(curveOf(mEdit->start(), mHeld->edge), event.point).distance;
     const double change = (distance - mHeld->distance) / kReach;
-    const double sigma = std::clamp(sigmaAt(curve, mHeld->t) + change, 0., kMostEditedBlurPx);
+    const double sigma = std::clamp(sigmaAt(curve, mHeld->t) + change, 0., kWidestBlurPx);
     std::array<double, 2> ends{sigma, sigma};
     if (mEdges.size() == 1 && mHeld->t < kEndShare) ends[1] = double(curve.blurSigma[1]);
     if (mEdges.size() == 1 && mHeld->t > 1 - kEndShare) ends[0] = double(curve.blurSigma[0]);

@@ -7,8 +7,7 @@
 
 namespace tessera {
 
-// Calls body(begin, end) over disjoint ranges that cover [0, count), each of at least `grain` indices but the
-// last.
+// Calls body(begin, end) over disjoint ranges that cover [0, count), each of at most `grain` indices.
 void parallelFor(size_t count, size_t grain, const std::function<void(size_t begin, size_t end)>& body);
 
 // Runs `body` so that parallelFor inside it uses at most `threads` threads; 0 means one for each core.

@@ -42,7 +42,7 @@ struct Document {
     // The step, in colour units (1 is 255 levels), to which colours are rounded in the file. Chosen at the
     // first encoding, then kept for ever: decoding and encoding again gives the same bytes. For splines of
     // the default centres no pixel moves by more than 0.1 level; for splines on sites the picture loses at
-    // most 0.1 dB of the PSNR in `difference`, or of 45 dB where there is none.
+    // most 0.1 dB of the PSNR in `difference`, or of 45 dB where there is none, and less where it is low.
     std::optional<double> colourStep;
     VectorizeSettings settings;
     VectorizeReport report;

@@ -9,6 +9,7 @@
 
 #include "core/document/file_mesh.h"
 #include "core/document/range_coder.h"
+#include "core/mesh/blur_profile.h"
 #include "core/mesh/lattice.h"
 
 namespace tessera {
@@ -37,11 +38,9 @@ struct FileGeometry {
 };
 
 constexpr int64_t kBlurStepsPerPixel = 256;
-constexpr int64_t kMaxBlurSteps = int64_t{1} << 24;  // exact as a float
-constexpr int kMaxPictureSide = 1 << 21;
-// Control points lie within this many lattice steps of 0, which leaves the picture's size of room on all
-// sides.
-constexpr int64_t kMaxCoordinate = int64_t{1} << 30;
+constexpr int64_t kMaxBlurSteps = int64_t(kWidestBlurPx * kBlurStepsPerPixel);
+// Control points lie within this many lattice steps of 0.
+constexpr int64_t kMaxCoordinate = 2 * int64_t(kMaxPictureSide) * kLatticePerPixel;
 
 // Both directions return what is wrong, or empty. Decoding sizes the arrays by the mesh. Encoding is of the
 // newest version.

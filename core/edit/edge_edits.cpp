@@ -75,9 +75,9 @@ bool hasJump(const PatchMesh& mesh, EdgeId e) {
 
 Result<Touched> setBlur(PatchMesh& mesh, std::span<const EdgeId> edges, double sigmaStart, double sigmaEnd) {
     if (const auto sound = checkAlive(mesh, edges); !sound) return tl::unexpected<Error>(sound.error());
-    const auto inRange = [](double sigma) { return sigma >= 0 && sigma <= kMostEditedBlurPx; };
+    const auto inRange = [](double sigma) { return sigma >= 0 && sigma <= kWidestBlurPx; };
     if (!inRange(sigmaStart) || !inRange(sigmaEnd))
-        return failure(ErrorCode::Usage, "a blur is from 0 to " + std::to_string(int(kMostEditedBlurPx)) +
+        return failure(ErrorCode::Usage, "a blur is from 0 to " + std::to_string(int(kWidestBlurPx)) +
                                              " px wide; choose one in this range");
     for (const EdgeId e : edges)
         if (!mesh.curve(e).feature)

@@ -5,13 +5,11 @@
 
 #include "core/base/result.h"
 #include "core/edit/touched.h"
+#include "core/mesh/blur_profile.h"
 
 namespace tessera {
 
-// The widest blur that an edit gives, px.
-constexpr double kMostEditedBlurPx = 64;
-
-// Sets the blur of features. Where the edges, in this order, are a path, sigma (px, 0..kMostEditedBlurPx)
+// Sets the blur of features. Where the edges, in this order, are a path, sigma (px, 0..kWidestBlurPx)
 // goes from its value at the start of the first to that at the end of the last, by arc length; else both must
 // be equal. Fails with Usage where an edge is no feature.
 Result<Touched> setBlur(PatchMesh& mesh, std::span<const EdgeId> edges, double sigmaStart, double sigmaEnd);

@@ -171,8 +171,6 @@ int64_t signedArea20(const LatticeTriangle& t) {
     return sum;
 }
 
-namespace {}  // namespace
-
 bool fitInner(std::span<const glm::dvec2> points, std::span<const double> parameters, BezierCurve& curve) {
     double a11 = 0, a12 = 0, a22 = 0;
     glm::dvec2 r1(0), r2(0);

@@ -6,6 +6,8 @@
 
 namespace tessera {
 
+// The largest sigma that a feature may have, px: with wider ones each patch would reckon with all features.
+constexpr double kWidestBlurPx = 64;
 // Beyond this many sigmas from its curve a feature changes nothing.
 constexpr double kBlurReach = 3;
 // A feature's blur fades out over this many sigmas of arc length before a free tip or a junction.

@@ -11,6 +11,10 @@ namespace tessera {
 
 constexpr int kLatticePerPixel = 256;
 
+// Pictures are at most so wide and high, px. Control points may lie as far outside; beyond, certificates and
+// areas would not fit into 64 bits.
+constexpr int kMaxPictureSide = 1 << 18;
+
 // Image coordinates in 1/256 pixel: x right, y down, (0, 0) the picture's upper left corner.
 struct LatticePoint {
     int32_t x = 0;

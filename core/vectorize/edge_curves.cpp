@@ -43,9 +43,10 @@ struct EdgeCurveFinder::Trace {
     bool closed = false;
 };
 
-EdgeCurveFinder::EdgeCurveFinder(const Image& image)
-    : mSmooth(image),
-      mWhiteNoise(whiteNoise(image)),
+EdgeCurveFinder::EdgeCurveFinder(const Image& image, std::stop_token stop)
+    : mStop(std::move(stop)),
+      mSmooth(image),
+      mWhiteNoise(whiteNoise()),
       mSquare(image.planeSize()),
       mCoarserSquare(image.planeSize()),
       mDirection(image.planeSize()),
@@ -61,36 +62,43 @@ double EdgeCurveFinder::smoothingVariance(double sigmaPx) {
     return sigmaPx * sigmaPx + 1.5 * kSecondVariance - .5 * kFirstVariance;
 }
 
-std::vector<EdgeCurve> EdgeCurveFinder::find(double sigmaPx, double nextSigmaPx, double minLengthPx,
-                                             const std::stop_token& stop) {
+template <class Body>
+void EdgeCurveFinder::forRows(Body&& body) const {
+    constexpr size_t kGrain = 16;
+    parallelFor(size_t(mSmooth.height()), kGrain, [&](size_t begin, size_t end) {
+        for (size_t y = begin; y < end && !mStop.stop_requested(); ++y) body(int(y));
+    });
+}
+
+std::vector<EdgeCurve> EdgeCurveFinder::find(double sigmaPx, double nextSigmaPx, double minLengthPx) {
     std::vector<EdgeCurve> curves;
-    smoothTo(sigmaPx, stop);
+    smoothTo(sigmaPx);
     gradients(mSquare, &mDirection);
     const double unit = kPeak / std::sqrt(totalVariance(sigmaPx)), noiseLevel = noise();
     const auto low = float(std::max(kNoiseLow * noiseLevel, kContrastLow * unit));
     const auto high = float(std::max(kNoiseHigh * noiseLevel, kContrastHigh * unit));
-    if (stop.stop_requested()) return curves;
+    if (mStop.stop_requested()) return curves;
     derivativesAcross(low * low);
     mBlurredRatio = 1e9F;  // which no ratio of gradients reaches
     mNoiseSquare = float(2 * noiseLevel * noiseLevel);
     if (nextSigmaPx > sigmaPx) {
-        smoothTo(nextSigmaPx, stop);
+        smoothTo(nextSigmaPx);
         gradients(mCoarserSquare, nullptr);
         mBlurredRatio = float(kPreference * std::sqrt(totalVariance(sigmaPx) / totalVariance(nextSigmaPx)));
     }
-    if (stop.stop_requested()) return curves;
+    if (mStop.stop_requested()) return curves;
     std::vector<Crossing> found = crossings(low * low);
     for (const int wantedLinks : {0, 1, 2})  // open curves from their ends, then closed ones
-        for (uint32_t i = 0; i < found.size() && !stop.stop_requested(); ++i)
+        for (uint32_t i = 0; i < found.size() && !mStop.stop_requested(); ++i)
             if (found[i].links == wantedLinks) keep(follow(found, i), high, minLengthPx, curves);
     for (const EdgeCurve& curve : curves) claim(curve);
     return curves;
 }
 
-void EdgeCurveFinder::smoothTo(double sigmaPx, const std::stop_token& stop) {
+void EdgeCurveFinder::smoothTo(double sigmaPx) {
     if (sigmaPx <= mSigma) return;
     const double more = std::sqrt(sigmaPx * sigmaPx - mSigma * mSigma);
-    for (int c = 0; c < mSmooth.channels() && !stop.stop_requested(); ++c) {
+    for (int c = 0; c < mSmooth.channels() && !mStop.stop_requested(); ++c) {
         cv::Mat plane(mSmooth.height(), mSmooth.width(), CV_32F, mSmooth.plane(c).data());
         cv::GaussianBlur(plane, plane, cv::Size(), more, more, cv::BORDER_REPLICATE);
     }
@@ -99,50 +107,50 @@ void EdgeCurveFinder::smoothTo(double sigmaPx, const std::stop_token& stop) {
 
 void EdgeCurveFinder::gradients(std::vector<float>& square, std::vector<glm::vec2>* direction) const {
     const int w = mSmooth.width(), h = mSmooth.height();
-    parallelFor(size_t(h), 16, [&](size_t begin, size_t end) {
+    forRows([&](int y) {
         std::vector<float> xx(size_t(w), 0.F), xy(xx), yy(xx);
-        for (size_t row = begin; row < end; ++row) {
-            const int y = int(row), above = std::max(y - 1, 0), below = std::min(y + 1, h - 1);
-            std::fill(xx.begin(), xx.end(), 0.F);
-            std::fill(xy.begin(), xy.end(), 0.F);
-            std::fill(yy.begin(), yy.end(), 0.F);
-            for (int c = 0; c < mSmooth.channels(); ++c) {
-                const float* plane = mSmooth.plane(c).data();
-                const float *a = plane + at(0, above), *m = plane + at(0, y), *b = plane + at(0, below);
-                const auto add = [&](int x, int l, int r) {
-                    const float gx = (4 * (m[r] - m[l]) + (a[r] - a[l]) + (b[r] - b[l])) / 12;
-                    const float gy = (4 * (b[x] - a[x]) + (b[r] - a[r]) + (b[l] - a[l])) / 12;
-                    const auto i = size_t(x);
-                    xx[i] += gx * gx;
-                    xy[i] += gx * gy;
-                    yy[i] += gy * gy;
-                };
-                add(0, 0, std::min(1, w - 1));
-                for (int x = 1; x + 1 < w; ++x) add(x, x - 1, x + 1);
-                if (w > 1) add(w - 1, w - 2, w - 1);
-            }
-            for (int x = 0; x < w; ++x) {
+        const int above = std::max(y - 1, 0), below = std::min(y + 1, h - 1);
+        for (int c = 0; c < mSmooth.channels(); ++c) {
+            const float* plane = mSmooth.plane(c).data();
+            const float *a = plane + at(0, above), *m = plane + at(0, y), *b = plane + at(0, below);
+            const auto add = [&](int x, int l, int r) {
+                const float gx = (4 * (m[r] - m[l]) + (a[r] - a[l]) + (b[r] - b[l])) / 12;
+                const float gy = (4 * (b[x] - a[x]) + (b[r] - a[r]) + (b[l] - a[l])) / 12;
                 const auto i = size_t(x);
-                const float half = .5F * (xx[i] - yy[i]), root = std::sqrt(half * half + xy[i] * xy[i]);
-                square[at(x, y)] = .5F * (xx[i] + yy[i]) + root;
-                if (!direction) continue;
-                const glm::vec2 d = half >= 0 ? glm::vec2(half + root, xy[i]) : glm::vec2(xy[i], root - half);
-                const float length = glm::length(d);
-                (*direction)[at(x, y)] = length > 0 ? d / length : glm::vec2(1, 0);
-            }
+                xx[i] += gx * gx;
+                xy[i] += gx * gy;
+                yy[i] += gy * gy;
+            };
+            add(0, 0, std::min(1, w - 1));
+            for (int x = 1; x + 1 < w; ++x) add(x, x - 1, x + 1);
+            if (w > 1) add(w - 1, w - 2, w - 1);
+        }
+        for (int x = 0; x < w; ++x) {
+            const auto i = size_t(x);
+            const float half = .5F * (xx[i] - yy[i]), root = std::sqrt(half * half + xy[i] * xy[i]);
+            square[at(x, y)] = .5F * (xx[i] + yy[i]) + root;
+            if (!direction) continue;
+            const glm::vec2 d = half >= 0 ? glm::vec2(half + root, xy[i]) : glm::vec2(xy[i], root - half);
+            const float length = glm::length(d);
+            (*direction)[at(x, y)] = length > 0 ? d / length : glm::vec2(1, 0);
         }
     });
 }
 
 // The least that `value` is in a block of the picture, but for the lowest few.
 template <class Value>
-double quietest(int w, int h, Value&& value) {
+double EdgeCurveFinder::quietest(Value&& value) const {
     constexpr int kBlockPx = 24;
     constexpr double kShare = .06;
-    std::vector<double> values;
-    for (int y0 = 0; y0 < h; y0 += kBlockPx)
-        for (int x0 = 0; x0 < w; x0 += kBlockPx)
-            values.push_back(value(x0, y0, std::min(x0 + kBlockPx, w), std::min(y0 + kBlockPx, h)));
+    const int w = mSmooth.width(), h = mSmooth.height();
+    const int columns = (w + kBlockPx - 1) / kBlockPx, rows = (h + kBlockPx - 1) / kBlockPx;
+    std::vector<double> values(size_t(columns) * size_t(rows), 0);
+    parallelFor(values.size(), 16, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end && !mStop.stop_requested(); ++i) {
+            const int x0 = int(i % size_t(columns)) * kBlockPx, y0 = int(i / size_t(columns)) * kBlockPx;
+            values[i] = value(x0, y0, std::min(x0 + kBlockPx, w), std::min(y0 + kBlockPx, h));
+        }
+    });
     const auto low = values.begin() + std::ptrdiff_t(kShare * double(values.size()));
     std::nth_element(values.begin(), low, values.end());
     return *low;
@@ -150,10 +158,11 @@ double quietest(int w, int h, Value&& value) {
 
 // The deviation of white noise, all channels together, by a difference that sees neither slopes nor edges
 // along rows and columns (Immerkaer 1996).
-double EdgeCurveFinder::whiteNoise(const Image& image) {
+double EdgeCurveFinder::whiteNoise() const {
+    const Image& image = mSmooth;
     const int w = image.width(), h = image.height();
     if (w < 3 || h < 3) return 0;
-    const double square = quietest(w, h, [&](int x0, int y0, int x1, int y1) {
+    const double square = quietest([&](int x0, int y0, int x1, int y1) {
         double sum = 0;
         int count = 0;
         for (int c = 0; c < image.channels(); ++c)
@@ -176,9 +185,8 @@ double EdgeCurveFinder::whiteNoise(const Image& image) {
 // what white noise would give; noise of photographs is smoother than white.
 double EdgeCurveFinder::noise() const {
     constexpr double kMostOfWhite = 2.5;
-    std::vector<float> block;
-    const double median = quietest(mSmooth.width(), mSmooth.height(), [&](int x0, int y0, int x1, int y1) {
-        block.clear();
+    const double median = quietest([&](int x0, int y0, int x1, int y1) {
+        std::vector<float> block;
         for (int y = y0; y < y1; y += 2)
             for (int x = x0; x < x1; x += 2) block.push_back(mSquare[at(x, y)]);
         const auto middle = block.begin() + std::ptrdiff_t(block.size() / 2);
@@ -194,34 +202,32 @@ double EdgeCurveFinder::noise() const {
 // edge was before it was blurred, and linear interpolation finds it.
 void EdgeCurveFinder::derivativesAcross(float least) {
     const int w = mSmooth.width(), h = mSmooth.height();
-    parallelFor(size_t(h), 16, [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row) {
-            const int y = int(row), above = std::max(y - 1, 0), below = std::min(y + 1, h - 1);
-            for (int x = 0; x < w; ++x) {
-                const size_t i = at(x, y);
-                if (mSquare[i] < least || mTaken[i]) continue;
-                const int l = std::max(x - 1, 0), r = std::min(x + 1, w - 1);
-                const glm::vec2 n = mDirection[i];
-                float sum = 0;
-                for (int c = 0; c < mSmooth.channels(); ++c) {
-                    const float* plane = mSmooth.plane(c).data();
-                    const float *a = plane + at(0, above), *m = plane + at(0, y), *b = plane + at(0, below);
-                    const float gx = (4 * (m[r] - m[l]) + (a[r] - a[l]) + (b[r] - b[l])) / 12;
-                    const float gy = (4 * (b[x] - a[x]) + (b[r] - a[r]) + (b[l] - a[l])) / 12;
-                    const float hxx = (10 * (m[r] - 2 * m[x] + m[l]) + (a[r] - 2 * a[x] + a[l]) +
-                                       (b[r] - 2 * b[x] + b[l])) /
-                                      12;
-                    const float hyy = (10 * (b[x] - 2 * m[x] + a[x]) + (b[r] - 2 * m[r] + a[r]) +
-                                       (b[l] - 2 * m[l] + a[l])) /
-                                      12;
-                    const float hxy = (b[r] - b[l] - a[r] + a[l]) / 4;
-                    const float along = n.x * n.x * hxx + 2 * n.x * n.y * hxy + n.y * n.y * hyy;
-                    sum += (n.x * gx + n.y * gy) * .5F * (along + hxx + hyy);
-                }
-                // Never zero, so that a vertex is on the same side of the level set as seen from all
-                // triangles.
-                mAcross[i] = sum != 0 ? sum / mSquare[i] : 1e-20F;
+    forRows([&](int y) {
+        const int above = std::max(y - 1, 0), below = std::min(y + 1, h - 1);
+        for (int x = 0; x < w; ++x) {
+            const size_t i = at(x, y);
+            if (mSquare[i] < least || mTaken[i]) continue;
+            const int l = std::max(x - 1, 0), r = std::min(x + 1, w - 1);
+            const glm::vec2 n = mDirection[i];
+            float sum = 0;
+            for (int c = 0; c < mSmooth.channels(); ++c) {
+                const float* plane = mSmooth.plane(c).data();
+                const float *a = plane + at(0, above), *m = plane + at(0, y), *b = plane + at(0, below);
+                const float gx = (4 * (m[r] - m[l]) + (a[r] - a[l]) + (b[r] - b[l])) / 12;
+                const float gy = (4 * (b[x] - a[x]) + (b[r] - a[r]) + (b[l] - a[l])) / 12;
+                const float hxx =
+                    (10 * (m[r] - 2 * m[x] + m[l]) + (a[r] - 2 * a[x] + a[l]) + (b[r] - 2 * b[x] + b[l])) /
+                    12;
+                const float hyy =
+                    (10 * (b[x] - 2 * m[x] + a[x]) + (b[r] - 2 * m[r] + a[r]) + (b[l] - 2 * m[l] + a[l])) /
+                    12;
+                const float hxy = (b[r] - b[l] - a[r] + a[l]) / 4;
+                const float along = n.x * n.x * hxx + 2 * n.x * n.y * hxy + n.y * n.y * hyy;
+                sum += (n.x * gx + n.y * gy) * .5F * (along + hxx + hyy);
             }
+            // Never zero, so that a vertex is on the same side of the level set as seen from all
+            // triangles.
+            mAcross[i] = sum != 0 ? sum / mSquare[i] : 1e-20F;
         }
     });
 }
@@ -230,7 +236,7 @@ std::vector<EdgeCurveFinder::Crossing> EdgeCurveFinder::crossings(float least) {
     const int w = mSmooth.width(), h = mSmooth.height();
     const auto usable = [&](size_t i) { return mSquare[i] >= least && !mTaken[i]; };
     std::vector<Crossing> found;
-    for (int y = 0; y < h; ++y)
+    for (int y = 0; y < h && !mStop.stop_requested(); ++y)
         for (int x = 0; x < w; ++x) {
             const size_t p = at(x, y);
             std::fill_n(mIndex.begin() + std::ptrdiff_t(3 * p), 3, kNone);
@@ -251,7 +257,7 @@ std::vector<EdgeCurveFinder::Crossing> EdgeCurveFinder::crossings(float least) {
                                  coarser > mBlurredRatio * (square - 1.5 * mNoiseSquare)});
             }
         }
-    for (int y = 0; y + 1 < h; ++y)
+    for (int y = 0; y + 1 < h && !mStop.stop_requested(); ++y)
         for (int x = 0; x + 1 < w; ++x) {
             linkInTriangle(x, y, false, found);
             linkInTriangle(x, y, true, found);

@@ -24,15 +24,14 @@ struct EdgeCurve {
 // last, so that scales must grow.
 class EdgeCurveFinder {
   public:
-    explicit EdgeCurveFinder(const Image& image);
+    // Where `stop` is asked for, this and find() end early, with curves missing.
+    EdgeCurveFinder(const Image& image, std::stop_token stop);
 
     // Curves at least minLengthPx long, in a fixed order, that keep 2 px away from those of the scales before
     // and are not so blurred that the scale to come next shows them better (Lindeberg's normalized gradient;
     // nextSigmaPx is 0 where none comes). A gradient counts above what noise gives (from the gradients' own
-    // distribution) and above what a step of visible contrast gives. Ends early, with curves missing, where
-    // `stop` is asked for.
-    std::vector<EdgeCurve> find(double sigmaPx, double nextSigmaPx, double minLengthPx,
-                                const std::stop_token& stop);
+    // distribution) and above what a step of visible contrast gives.
+    std::vector<EdgeCurve> find(double sigmaPx, double nextSigmaPx, double minLengthPx);
 
     // The square of the gradient's magnitude at each pixel, in colour units a px, at the scale asked for
     // last.
@@ -46,9 +45,14 @@ class EdgeCurveFinder {
     struct Trace;
 
     static double totalVariance(double sigmaPx);
-    void smoothTo(double sigmaPx, const std::stop_token& stop);
+    // Calls body(y) for the rows of the picture, on all threads, as long as there is no stop.
+    template <class Body>
+    void forRows(Body&& body) const;
+    void smoothTo(double sigmaPx);
     void gradients(std::vector<float>& square, std::vector<glm::vec2>* direction) const;
-    static double whiteNoise(const Image& image);
+    template <class Value>
+    double quietest(Value&& value) const;
+    double whiteNoise() const;
     double noise() const;
     void derivativesAcross(float least);
     std::vector<Crossing> crossings(float least);
@@ -59,6 +63,7 @@ class EdgeCurveFinder {
     void claim(const EdgeCurve& curve);
     size_t at(int x, int y) const { return size_t(y) * size_t(mSmooth.width()) + size_t(x); }
 
+    std::stop_token mStop;
     Image mSmooth;
     double mWhiteNoise;  // deviation in the picture itself
     double mSigma = 0;

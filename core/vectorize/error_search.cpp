@@ -19,7 +19,7 @@ constexpr double kUsualSlope = -.42, kSteepest = -.9, kFlattest = -.08;
 constexpr double kNear = 1.35;
 
 // Of two runs: a texture that no patch resolves leaves almost the same with many more of them.
-constexpr double kSteepestRuns = -1.5, kFlattestRuns = -.04;
+constexpr double kSteepestRuns = -3, kFlattestRuns = -.04;
 // How far apart runs must be in log patches to tell the slope, and how far from one the next may be.
 constexpr double kSameRun = .02, kFarthest = 1.4;
 
@@ -89,19 +89,21 @@ double ErrorSearch::draftError(double patches) const {
     return b.error * std::pow(patches / b.patches, slope);
 }
 
-// Of a full run: a part of a draft's, which is right for the last one; through the last two a line.
+// Of a full run: a part of a draft's, which is right for the last one; through the two that are nearest to
+// the goal a line.
 double ErrorSearch::predictedError(double patches) const {
     if (mRuns.empty()) return kUsualShare * draftError(patches);
-    const Run& last = mRuns.back();
-    if (mRuns.size() > 1) {
-        const Run& before = mRuns[mRuns.size() - 2];
-        const double steps = std::log(last.patches / before.patches);
-        if (std::abs(steps) > kSameRun)
-            return last.error *
-                   std::pow(patches / last.patches, std::clamp(std::log(last.error / before.error) / steps,
-                                                               kSteepestRuns, kFlattestRuns));
-    }
-    return last.error * draftError(patches) / draftError(last.patches);
+    if (mRuns.size() == 1) return mRuns[0].error * draftError(patches) / draftError(mRuns[0].patches);
+    const auto off = [&](const Run& run) { return std::abs(std::log(run.error / mGoal.error)); };
+    std::vector<Run> nearest = mRuns;
+    std::partial_sort(nearest.begin(), nearest.begin() + 2, nearest.end(),
+                      [&](const Run& a, const Run& b) { return off(a) < off(b); });
+    const Run &a = nearest[0], &b = nearest[1];
+    const double steps = std::log(b.patches / a.patches);
+    const double slope = std::abs(steps) > kSameRun
+                             ? std::clamp(std::log(b.error / a.error) / steps, kSteepestRuns, kFlattestRuns)
+                             : kUsualSlope;
+    return a.error * std::pow(patches / a.patches, slope);
 }
 
 double ErrorSearch::nextGuess() const {
@@ -111,6 +113,11 @@ double ErrorSearch::nextGuess() const {
         const double last = std::log(mRuns.back().patches);
         low = std::max(low, std::min(last - kFarthest, high));
         high = std::min(high, std::max(last + kFarthest, low));
+    }
+    for (const Run& run : mRuns) {  // between what was too few and what was too many
+        double& bound = run.error > mGoal.error ? low : high;
+        const double at = std::log(run.patches);
+        if (at > low && at < high) bound = at;
     }
     for (int i = 0; i < kBisections; ++i) {
         const double middle = (low + high) / 2;

@@ -21,7 +21,7 @@ constexpr double kLeastSegmentPx = 4, kMostSegmentPx = 40;
 constexpr double kMostTurn = 75 * std::numbers::pi / 180;
 constexpr int kTangentPoints = 3;
 // After so many rounds of mending parts of chains, whole chains go.
-constexpr int kMendRounds = 8, kMostRounds = 60;
+constexpr int kMendRounds = 8;
 
 using Cuts = std::map<uint32_t, std::set<uint32_t>>;  // wanted nodes, by chain
 
@@ -296,13 +296,13 @@ FeatureNetwork buildFeatureNetwork(std::vector<FeatureChain> chains, int width, 
     network.chains = separated(std::move(chains), width, height, 1.5 * kLeastSegmentPx, stop);
     limitBlur(network.chains, stop);
     Cuts cuts;
-    for (int round = 0; round < kMostRounds && !stop.stop_requested(); ++round) {
+    for (int round = 0; !stop.stop_requested(); ++round) {  // in the end each gives up a chain or more
         Builder(network, settings, cuts).build();
         const std::vector<NetworkViolation> violations = networkViolations(network);
         if (violations.empty()) return network;
         mend(network, violations, round >= kMendRounds, cuts);
     }
-    return FeatureNetwork{width, height, {}, {}, {}};
+    return network;
 }
 
 }  // namespace tessera

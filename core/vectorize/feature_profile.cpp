@@ -157,12 +157,14 @@ Step fitStep(const std::vector<Sample>& samples, int channels, float deviation, 
         }
     }
     Step step;
+    // Extrapolation from few pixels can give colours that no picture has.
+    float brightest = 1;
+    for (const Sample& s : samples) brightest = std::max(brightest, std::ranges::max(s.colour));
     const double det = w * wpp - wp * wp;
     if (det <= 1e-3 * w * w) return step;
     for (size_t c = 0; c < size_t(channels); ++c) {
         step.base[c] = float((wpp * v[c] - wp * vp[c]) / det);
-        // Extrapolation from few pixels can give colours that no picture has.
-        step.jump[c] = float(std::clamp((w * vp[c] - wp * v[c]) / det, -1.0, 1.0));
+        step.jump[c] = std::clamp(float((w * vp[c] - wp * v[c]) / det), -brightest, brightest);
         step.contrast += step.jump[c] * step.jump[c];
     }
     step.contrast = std::sqrt(step.contrast);

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/base/check.h"
+#include "core/base/parallel.h"
 #include "core/base/round_up.h"
 #include "core/base/vector_clones.h"
 #include "core/mesh/tps.h"
@@ -408,9 +409,11 @@ PolynomialFit::PolynomialFit(const Image& picture)
       mChannels(picture.channels()),
       mPixels(size_t(roundUp(mWidth, kLanes)) * size_t(mHeight) * size_t(mChannels)) {
     TESSERA_CHECK(mChannels == 3 || mChannels == 4);
-    for (int c = 0; c < mChannels; ++c)
-        for (int y = 0; y < mHeight; ++y)
-            for (int x = 0; x < mWidth; ++x) mPixels[index(x, y, c)] = picture.at(x, y, c);
+    parallelFor(size_t(mHeight), 64, [&](size_t begin, size_t end) {
+        for (int c = 0; c < mChannels; ++c)
+            for (int y = int(begin); y < int(end); ++y)
+                for (int x = 0; x < mWidth; ++x) mPixels[index(x, y, c)] = picture.at(x, y, c);
+    });
 }
 
 size_t PolynomialFit::index(int x, int y, int c) const {

@@ -62,16 +62,32 @@ bool isName(std::string_view text) {
     });
 }
 
+bool isWhole(const NumberKey& number) {
+    return std::holds_alternative<int S::*>(number.member);
+}
+
+bool inRange(const NumberKey& number, double value) {
+    return value >= number.least && value <= number.most;
+}
+
+tl::unexpected<Error> outOfRange(const NumberKey& number, const std::string& value) {
+    return failure(ErrorCode::Usage, std::string(number.key) + " is " +
+                                         (isWhole(number) ? "a whole number from " : "a number from ") +
+                                         toText(number.least) + " to " + toText(number.most) + ", not '" +
+                                         value + "'");
+}
+
+double valueOf(const VectorizeSettings& settings, const NumberKey& number) {
+    return std::visit([&](auto member) { return double(settings.*member); }, number.member);
+}
+
 Result<void> setNumber(VectorizeSettings& settings, const NumberKey& number, const std::string& value) {
     double parsed = 0;
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), parsed);
-    const bool whole = std::holds_alternative<int S::*>(number.member);
-    const std::string key(number.key), range = toText(number.least) + " to " + toText(number.most);
-    const std::string kind = whole ? "a whole number from " : "a number from ";
-    if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(parsed) ||
-        (whole && parsed != std::floor(parsed)) || parsed < number.least || parsed > number.most)
-        return failure(ErrorCode::Usage, key + " is " + kind + range + ", not '" + value + "'");
-    if (whole)
+    if (error != std::errc() || end != value.data() + value.size() || !inRange(number, parsed) ||
+        (isWhole(number) && parsed != std::floor(parsed)))
+        return outOfRange(number, value);
+    if (isWhole(number))
         settings.*std::get<int S::*>(number.member) = int(parsed);
     else
         settings.*std::get<double S::*>(number.member) = parsed;
@@ -83,12 +99,18 @@ Result<void> setNumber(VectorizeSettings& settings, const NumberKey& number, con
 std::vector<std::pair<std::string, std::string>> toKeyValues(const VectorizeSettings& settings) {
     std::vector<std::pair<std::string, std::string>> pairs{{"method", settings.method}};
     for (const NumberKey& number : kNumbers) {
-        const double value = std::visit([&](auto member) { return double(settings.*member); }, number.member);
-        pairs.emplace_back(number.key, toText(value));
+        pairs.emplace_back(number.key, toText(valueOf(settings, number)));
     }
     for (const auto& [stage, variant] : settings.stageVariants)
         pairs.emplace_back(std::string(kStagePrefix) + stage, variant);
     return pairs;
+}
+
+Result<void> checkRanges(const VectorizeSettings& settings) {
+    for (const NumberKey& number : kNumbers)
+        if (const double value = valueOf(settings, number); !inRange(number, value))
+            return outOfRange(number, toText(value));
+    return {};
 }
 
 Result<void> setKeyValue(VectorizeSettings& settings, const std::string& key, const std::string& value) {

@@ -63,6 +63,9 @@ std::vector<std::pair<std::string, std::string>> toKeyValues(const VectorizeSett
 // Sets one of them; Usage for an unknown key or a value out of range, with the reason.
 Result<void> setKeyValue(VectorizeSettings& settings, const std::string& key, const std::string& value);
 
+// Usage where a number is outside its range, with the range.
+Result<void> checkRanges(const VectorizeSettings& settings);
+
 struct StageReport {
     std::string stage;
     std::string variant;

@@ -96,10 +96,10 @@ std::vector<uint32_t> findCorners(const FeatureChain& chain, double degrees) {
 
 // Replaces each point by the value of the parabola through its neighbours (Savitzky and Golay 1964), which
 // keeps curvature; moves it by kMostShiftPx at most, corners and ends not at all.
-void smooth(FeatureChain& chain) {
+void smooth(FeatureChain& chain, double cornerDegrees) {
     constexpr double kMostShiftPx = .1;
     const auto n = int(chain.points.size());
-    const std::vector<uint32_t> corners = findCorners(chain, 40);
+    const std::vector<uint32_t> corners = findCorners(chain, cornerDegrees);
     std::vector<int> room(chain.points.size(), 4);  // points to the next corner or end
     for (int i = 0; i < n && !chain.closed; ++i) room[size_t(i)] = std::min({4, i, n - 1 - i});
     for (const uint32_t corner : corners)
@@ -230,17 +230,17 @@ Result<std::vector<FeatureChain>> detectSubpixelFeatures(const Image& image,
     std::vector<float> outlineGradient;
     if (image.width() < 3 || image.height() < 3) return chains;
     {
-        EdgeCurveFinder finder(image);
+        EdgeCurveFinder finder(image, progress.stopToken());
         for (size_t s = 0; s < kScalesPx.size(); ++s) {
             const auto curves = finder.find(kScalesPx[s], s + 1 < kScalesPx.size() ? kScalesPx[s + 1] : 0,
-                                            .5 * settings.minChainPixels, progress.stopToken());
+                                            .5 * settings.minChainPixels);
             for (const EdgeCurve& curve : curves) chains.push_back(resampled(curve, kScalesPx[s]));
             if (s == kOutlineScale) outlineGradient = finder.squaredGradient();
             if (!progress.step(.2 * double(s + 1))) return stopped();
         }
     }
     chains = joinTips(awayFromBorder(std::move(chains), image.width(), image.height()));
-    eachChain(chains, smooth);
+    eachChain(chains, [&](FeatureChain& chain) { smooth(chain, settings.cornerDegrees); });
     eachChain(chains, [&](FeatureChain& chain) { extendToBorder(chain, image.width(), image.height()); });
     if (!progress.step(.65)) return stopped();
     chains = dropShort(joinJunctions(std::move(chains)), settings.minChainPixels);

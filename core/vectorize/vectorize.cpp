@@ -231,7 +231,10 @@ std::vector<std::string> methodNames() {
 Result<VectorImage> vectorize(const Image& image, const VectorizeSettings& settings, Progress& progress,
                               const StageObserver& observe) {
     if (image.empty()) return failure(ErrorCode::Usage, "the picture has no pixels");
-    if (settings.patches < 2) return failure(ErrorCode::Usage, "at least 2 patches are needed");
+    if (std::max(image.width(), image.height()) > kMaxPictureSide)
+        return failure(ErrorCode::Usage, "the picture is larger than " + std::to_string(kMaxPictureSide) +
+                                             " px on a side; make it smaller first");
+    if (auto good = checkRanges(settings); !good) return tl::unexpected(good.error());
     const auto variants = chosenVariants(settings);
     if (!variants) return tl::unexpected(variants.error());
     Result<VectorImage> result;

@@ -340,12 +340,13 @@ TEST_F(Cli, TakesDetailPresetsAndFeatures) {
 }
 
 TEST_F(Cli, FindsThePatchesForAnError) {
-    Image image(96, 72, 3);
+    // So large that a patch more or less is a small part of the error.
+    Image image(192, 144, 3);
     for (int c = 0; c < 3; ++c)
-        for (int y = 0; y < 72; ++y)
-            for (int x = 0; x < 96; ++x)
+        for (int y = 0; y < 144; ++y)
+            for (int x = 0; x < 192; ++x)
                 image.at(x, y, c) =
-                    .5F + .3F * std::sin(.3F * float(x) + float(c)) * std::cos(.004F * float(y * y));
+                    .5F + .3F * std::sin(.3F * float(x) + float(c)) * std::cos(.001F * float(y * y));
     ASSERT_TRUE(writeImage(image, path("a.png")));
     const Outcome outcome =
         run({"vectorize", path("a.png"), "-o", path("a.tessera"), "--max-error", "2", "--json", "--quiet"});

@@ -187,7 +187,17 @@ TEST(VectorizeUsage, Errors) {
     expectUsage(image, method, "no method 'magic'");
     expectUsage(image, stage, "no stage 'sharpen'");
     expectUsage(image, variant, "stage 'features' of method 'default' has no variant 'sobel'");
-    expectUsage(image, wanting(1), "2 patches");
+    expectUsage(image, wanting(1), "patches is a whole number from 2");
+    VectorizeSettings settings = wanting(2, "paper");
+    settings.samplesPerSide = 0;
+    expectUsage(image, settings, "samplesPerSide");
+    settings = wanting(2);
+    settings.seamPasses = 0;
+    expectUsage(image, settings, "seamPasses");
+    settings = wanting(2);
+    settings.termsPerPatch = std::nan("");
+    expectUsage(image, settings, "termsPerPatch");
+    expectUsage(Image(kMaxPictureSide + 1, 1, 3, .5F), wanting(2), "larger than");
     expectUsage(Image(), {}, "no pixels");
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/document/chunk_file.h"
 #include "core/document/codec.h"
+#include "core/mesh/mesh_validate.h"
 
 namespace {
 
@@ -18,6 +19,7 @@ void tryDocument(std::span<const uint8_t> bytes) {
             std::abort();
         return;
     }
+    validate(document->mesh);  // may find anything, but overflow nowhere
     const auto stored = encodeDocument(*document);
     if (!stored) std::abort();
     auto again = decodeDocument(*stored);
