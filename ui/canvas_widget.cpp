@@ -74,7 +74,6 @@ void CanvasWidget::setSession(DocumentSession* session) {
         mSession->selection().disconnect(this);
     }
     mSession = session;
-    mPeeking = false;
     if (mSession) connect(mSession, &DocumentSession::changed, this, &CanvasWidget::follow);
     if (mSession) connect(&mSession->selection(), &Selection::changed, this, &CanvasWidget::outlineSelection);
     reloadMesh();
@@ -181,8 +180,9 @@ QImage CanvasWidget::overviewImage() const {
     return hasOriginal() ? mSession->photo().pyramid->levelFor(.1) : QImage();
 }
 
-void CanvasWidget::setTools(ToolManager* tools) {
+void CanvasWidget::setTools(ToolManager* tools, const ActionTable& keys) {
     mTools = tools;
+    mKeys = &keys;
     connect(mTools, &ToolManager::overlayChanged, this, [this] {
         updateCursor();
         update();
@@ -343,7 +343,7 @@ void CanvasWidget::resizeEvent(QResizeEvent*) {
 void CanvasWidget::updateCursor() {
     if (mPanning)
         setCursor(Qt::ClosedHandCursor);
-    else if (mSpace)
+    else if (mPanHeld)
         setCursor(Qt::OpenHandCursor);
     else if (mDraggingSplit || (mCursor && overSplitLine(*mCursor)))
         setCursor(Qt::SplitHCursor);

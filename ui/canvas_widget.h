@@ -18,6 +18,8 @@
 
 namespace tessera {
 
+class ActionTable;
+
 // Draws the vector image with the CPU renderer where there is one, else the photo. Positions in its interface
 // are logical widget coordinates, as Qt's events have them; the view inside is in device pixels.
 class CanvasWidget : public QWidget {
@@ -35,8 +37,8 @@ class CanvasWidget : public QWidget {
     void setScreenColours(const QColorSpace& space);
     // Null: the CPU renderer.
     void setDrawer(std::unique_ptr<FrameDrawer> drawer) { mFrames.setDrawer(std::move(drawer)); }
-    // Whose tools get what pointer and keys do here; outlives the canvas.
-    void setTools(ToolManager* tools);
+    // Whose tools get what pointer and keys do here, and which keys nudge; both outlive the canvas.
+    void setTools(ToolManager* tools, const ActionTable& keys);
 
     const ViewTransform& view() const { return mView; }
     QPointF toImage(QPointF position) const { return mView.toImage(position * devicePixelRatioF()); }
@@ -55,8 +57,12 @@ class CanvasWidget : public QWidget {
     QRectF visiblePart() const;
 
     void setOverlays(const OverlayOptions& options);
-    // Shows the photo instead of the vector image for as long as it is on. Holding O does the same.
+    // Shows the photo instead of the vector image for as long as one of the two is on: one is an option, the
+    // other a key that is held.
     void setShowOriginal(bool on);
+    void setPeeking(bool on);
+    // While the key is held, any tool drags the view.
+    void setPanHeld(bool on);
     // The photo left of a line that can be dragged, the vector image right of it.
     void setSplit(bool on);
     // The photo in a lens at the pointer.
@@ -121,14 +127,12 @@ class CanvasWidget : public QWidget {
     ToolEvent toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const;
     ToolKey toolKey(const QKeyEvent& event) const;
     void changeViewAsAsked(const ViewRequest& request);
-    // Whether the photo is what is seen there, for a held O or left of the split view's line.
+    // Whether the photo is what is seen there.
     bool seesPhoto(QPointF devicePosition) const;
     bool overSplitLine(QPointF devicePosition) const;
-    void setPeeking(bool on);
     // Something else is seen at the pointer, which has not moved.
     void lookAgain();
     void hoverAgain(Qt::KeyboardModifiers modifiers);
-    void setSpace(bool on);
     bool dragsView(const QMouseEvent& event) const;
     void dragView(QPointF position);
     // Zooms at once, or goes on with what a wheel has begun: the view before is that before all of it.
@@ -154,6 +158,7 @@ class CanvasWidget : public QWidget {
 
     DocumentSession* mSession = nullptr;
     ToolManager* mTools = nullptr;
+    const ActionTable* mKeys = nullptr;
     PatchMesh mMesh;  // as the frames and overlays show it
     FrameSource mFrames;
     OverlayPainter mOverlay;
@@ -172,8 +177,8 @@ class CanvasWidget : public QWidget {
     bool mFitted = true;        // the view follows the window until the user zooms or pans
     bool mDrafting = false;     // mMesh is a draft
     bool mShowOriginal = false;
-    bool mPeeking = false;  // O is held
-    bool mSpace = false;    // Space is held
+    bool mPeeking = false;
+    bool mPanHeld = false;
     bool mPanning = false;
     bool mPressed = false;  // a tool has been sent a press
     bool mXRay = false;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "ui/action_table.h"
+#include "ui/canvas_keys.h"
 #include "ui/canvas_widget.h"
 #include "ui/conversions.h"
 #include "ui/dialogs/cheat_sheet.h"
@@ -132,7 +133,10 @@ void MainWindow::connectViewActions() {
             widget->setVisible(shown);
     });
     onToggled(ActionId::HidePanels, [this](bool hidden) { setPanelsHidden(hidden); });
-    onToggled(ActionId::FullScreen, [this](bool full) { full ? showFullScreen() : showNormal(); });
+    onToggled(ActionId::FullScreen, [this](bool full) {
+        // Alone: a maximized window is maximized again afterwards.
+        setWindowState(windowState().setFlag(Qt::WindowFullScreen, full));
+    });
     // Tab moves the focus within the panel; on the canvas, where there is nothing to move to, it hides the
     // panels.
     QAction* hide = a[ActionId::HidePanels];
@@ -174,7 +178,12 @@ void MainWindow::connectWorkspace() {
 }
 
 void MainWindow::connectCanvas() {
-    mCanvas->setTools(&mTools);
+    mCanvas->setTools(&mTools, *mActions);
+    auto* keys = new CanvasKeys(*this, *mCanvas, *mActions);
+    keys->setParent(this);
+    connect(keys, &CanvasKeys::heldChanged, mCanvas, [this](ActionId id, bool down) {
+        id == ActionId::Pan ? mCanvas->setPanHeld(down) : mCanvas->setPeeking(down);
+    });
     connect(mCanvas, &CanvasWidget::viewChanged, this, &MainWindow::showView);
     connect(mCanvas, &CanvasWidget::cursorMoved, mStatus, &StatusBar::showCursor);
     connect(mCanvas, &CanvasWidget::cursorMoved, this, [this](std::optional<QPointF> image) {
@@ -203,7 +212,6 @@ void MainWindow::chooseRenderer() {
 }
 
 void MainWindow::connectPanels() {
-    connect(mPanel, &VectorizePanel::editingDone, this, [this] { mCanvas->setFocus(); });
     connect(mPanel, &VectorizePanel::draftWanted, this,
             [this] { mDrafts.want(mPanel->settings(mWorkspace.session())); });
     connect(mPanel, &VectorizePanel::draftDropped, &mDrafts, &DraftPreview::drop);
@@ -213,6 +221,7 @@ void MainWindow::connectPanels() {
     mRecolour->setToolOptions(mTools);
     mPalette->setToolOptions(mTools);
     mSelection->setToolOptions(mTools);
+    mSelection->showTipsOf(*mActions);
     connect(mRecolour, &RecolourPanel::said, this, &MainWindow::say);
     connect(mPalette, &PalettePanel::said, this, &MainWindow::say);
     connect(mSelection, &SelectionPanel::said, this, &MainWindow::say);
@@ -459,6 +468,8 @@ void MainWindow::applyBehaviour() {
 
 void MainWindow::changeEvent(QEvent* event) {
     if (event->type() == QEvent::PaletteChange && mActions) mActions->tintIcons(palette());
+    if (event->type() == QEvent::WindowStateChange && mActions)
+        (*mActions)[ActionId::FullScreen]->setChecked(isFullScreen());
     if (event->type() == QEvent::ActivationChange && !isActiveWindow()) mTools.cancel();
     QMainWindow::changeEvent(event);
 }

@@ -44,7 +44,7 @@ const std::array kRememberedToggles{
 void MainWindow::buildLayout() {
     setCentralWidget(makeCentre());
     addToolBar(Qt::LeftToolBarArea, mToolBar = new ToolBar(*mActions, mTools));
-    addToolBar(Qt::TopToolBarArea, mToolOptions = new ToolOptionsBar(mTools));
+    addToolBar(Qt::TopToolBarArea, mToolOptions = new ToolOptionsBar(*mActions, mTools));
     setTabPosition(Qt::RightDockWidgetArea, QTabWidget::North);
     makeDocks();
     setStatusBar(mStatus = new StatusBar);
