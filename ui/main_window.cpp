@@ -10,6 +10,7 @@
 #include <QWindow>
 #include <utility>
 
+#include "app/selection_actions.h"
 #include "ui/action_table.h"
 #include "ui/canvas_keys.h"
 #include "ui/canvas_widget.h"
@@ -420,11 +421,7 @@ void MainWindow::fitSelection() {
     const DocumentSession& session = *mWorkspace.session();
     const PatchMesh& mesh = session.document().mesh;
     QRectF area;
-    const auto include = [&](const Rect& box) { area |= toRect(box); };
-    for (const PatchId p : session.selection().patches()) include(controlBounds(mesh, p));
-    for (const EdgeId e : session.selection().curves())
-        for (const HalfedgeId h : {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))})
-            if (const PatchId p = mesh.connectivity().face(h); p.valid()) include(controlBounds(mesh, p));
+    for (const PatchId p : selectionsPatches(session)) area |= toRect(controlBounds(mesh, p));
     mCanvas->showRect(area);
 }
 
