@@ -45,7 +45,7 @@ bool CanvasWidget::event(QEvent* event) {
     if (event->type() != QEvent::NativeGesture) return QWidget::event(event);
     const auto* gesture = static_cast<QNativeGestureEvent*>(event);
     if (gesture->gestureType() != Qt::ZoomNativeGesture || !mSession) return QWidget::event(event);
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     view.zoomAt(gesture->position() * devicePixelRatioF(), 1 + gesture->value());
     zoomViewOn(view);
     return true;
@@ -54,7 +54,7 @@ bool CanvasWidget::event(QEvent* event) {
 void CanvasWidget::wheelEvent(QWheelEvent* event) {
     event->accept();
     if (!mSession) return;
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     const QPointF notches = QPointF(event->angleDelta()) / kNotch;
     if (event->modifiers() & Qt::ControlModifier) {
         view.zoomAt(event->position() * devicePixelRatioF(), std::pow(kZoomPerNotch, notches.y()));
@@ -73,19 +73,24 @@ void CanvasWidget::wheelEvent(QWheelEvent* event) {
 ToolEvent CanvasWidget::toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const {
     const QPointF image = toImage(position);
     return {.point = {image.x(), image.y()},
-            .pxPerScreenPx = devicePixelRatioF() / mView.scale(),
+            .pxPerScreenPx = devicePixelRatioF() / mLook.view.scale(),
             .modifiers = modifiersOf(modifiers),
             .onPhoto = seesPhoto(position * devicePixelRatioF())};
 }
 
 bool CanvasWidget::seesPhoto(QPointF devicePosition) const {
-    return showsPhoto() || (mSplit && hasOriginal() && devicePosition.x() < mSplitAt * deviceSize().width());
+    if (!hasOriginal()) return false;
+    // A document is shown as its photo until its first frame is there.
+    if (showsPhoto() || !showsAnyFrame()) return true;
+    const bool inLens =
+        mXRay && mCursor && QLineF(*mCursor, devicePosition).length() < kLensPx * devicePixelRatioF();
+    return inLens || (mSplit && devicePosition.x() < std::round(mSplitAt * deviceSize().width()));
 }
 
 ToolKey CanvasWidget::toolKey(const QKeyEvent& event) const {
     return {.code = codeOf(event, *mKeys),
             .modifiers = modifiersOf(event.modifiers()),
-            .pxPerScreenPx = devicePixelRatioF() / mView.scale()};
+            .pxPerScreenPx = devicePixelRatioF() / mLook.view.scale()};
 }
 
 bool CanvasWidget::overSplitLine(QPointF devicePosition) const {
@@ -123,7 +128,7 @@ void CanvasWidget::mouseDoubleClickEvent(QMouseEvent* event) {
 }
 
 void CanvasWidget::dragView(QPointF position) {
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     view.panBy(position - *mCursor);
     view.keepInView(pictureSize(), deviceSize());
     mCursor = position;

@@ -5,6 +5,7 @@
 #include <QColorSpace>
 #include <QColorTransform>
 #include <QElapsedTimer>
+#include <QPointer>
 #include <QWidget>
 #include <optional>
 
@@ -28,8 +29,8 @@ class CanvasWidget : public QWidget {
   public:
     explicit CanvasWidget(QWidget* parent = nullptr);
 
-    // Shows another document from its whole picture on; null shows none. The session outlives this or the
-    // next call.
+    // Shows another document as it was last seen, at first its whole picture; null shows none. The session
+    // outlives this or the next call.
     void setSession(DocumentSession* session);
     void setTheme(Theme theme);
     // That of the window's surface, into which pictures are converted; pictures are shown as they are, in
@@ -40,9 +41,9 @@ class CanvasWidget : public QWidget {
     // Whose tools get what pointer and keys do here, and which keys nudge; both outlive the canvas.
     void setTools(ToolManager* tools, const ActionTable& keys);
 
-    const ViewTransform& view() const { return mView; }
-    QPointF toImage(QPointF position) const { return mView.toImage(position * devicePixelRatioF()); }
-    QPointF toWidget(QPointF image) const { return mView.toScreen(image) / devicePixelRatioF(); }
+    const ViewTransform& view() const { return mLook.view; }
+    QPointF toImage(QPointF position) const { return mLook.view.toImage(position * devicePixelRatioF()); }
+    QPointF toWidget(QPointF image) const { return mLook.view.toScreen(image) / devicePixelRatioF(); }
 
     // Zooms by steps about the middle of the canvas.
     void zoomStep(bool larger);
@@ -50,7 +51,7 @@ class CanvasWidget : public QWidget {
     void fit();
     // Makes a part of the picture (image px) fill the canvas.
     void showRect(const QRectF& image);
-    // Back to the zoom before the last change of it; a second time, forth again.
+    // Back to the zoom before the last change of it by the user; a second time, forth again.
     void previousZoom();
     void centreOn(QPointF image);
     // The part of the picture that is in view, in image px.
@@ -111,9 +112,23 @@ class CanvasWidget : public QWidget {
     void focusOutEvent(QFocusEvent* event) override;
 
   private:
+    static constexpr double kLensPx = 110;  // the radius of the X-ray's lens
+
     QSizeF deviceSize() const { return QSizeF(size()) * devicePixelRatioF(); }
     QRectF deviceRect() const { return QRectF(QPointF(0, 0), deviceSize()); }
     QSizeF pictureSize() const;
+
+    // A view of a document.
+    struct Look {
+        ViewTransform view;
+        bool fitted = true;  // it follows the window until the user zooms or pans
+    };
+    // All that is remembered of a document that is not shown.
+    struct Looks {
+        QPointer<DocumentSession> session;
+        Look now, before;
+        QSizeF laidOut;
+    };
 
     void reloadMesh();
     void showMesh(const PatchMesh& mesh);
@@ -127,8 +142,10 @@ class CanvasWidget : public QWidget {
     ToolEvent toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const;
     ToolKey toolKey(const QKeyEvent& event) const;
     void changeViewAsAsked(const ViewRequest& request);
-    // Whether the photo is what is seen there.
+    // The one answer to whether the photo is what is seen there: in the whole canvas, left of the split
+    // view's line, or in the lens.
     bool seesPhoto(QPointF devicePosition) const;
+    bool showsAnyFrame() const { return mFrames.latest() || mFrames.overview(); }
     bool overSplitLine(QPointF devicePosition) const;
     // Something else is seen at the pointer, which has not moved.
     void lookAgain();
@@ -138,11 +155,20 @@ class CanvasWidget : public QWidget {
     // Zooms at once, or goes on with what a wheel has begun: the view before is that before all of it.
     void zoomView(const ViewTransform& view);
     void zoomViewOn(const ViewTransform& view);
-    void changeView(const ViewTransform& view);
+    // By hand.
+    void changeView(const ViewTransform& view) { look({view, false}); }
+    void look(const Look& look);
+    Look fittedLook() const;
+    // Keeps the look of the session that is shown, and takes up that of another one.
+    void storeLook();
+    void recallLook();
+    // The look in a canvas of another size.
+    void layOut();
     void requestFrame();
     void updateCursor();
     void reportCursor();
-    QColor shownColour(QPointF image) const;
+    // At a point within the picture.
+    QColor shownColour(QPointF devicePosition) const;
 
     void paintGround(QPainter& painter);
     // In the colours of the screen.
@@ -170,12 +196,12 @@ class CanvasWidget : public QWidget {
     std::vector<EdgeId> mSelectionOutline;
     std::vector<EdgeId> mHighlightOutline;
     QImage mHeatMap;
-    ViewTransform mView;
-    ViewTransform mViewBefore;  // the zoom that previousZoom() goes to
-    QElapsedTimer mSinceZoom;   // steps of a wheel in quick succession are one change of the zoom
-    QSizeF mLaidOut;            // device size for which mView was made
-    bool mFitted = true;        // the view follows the window until the user zooms or pans
-    bool mDrafting = false;     // mMesh is a draft
+    Look mLook;
+    Look mLookBefore;  // the zoom that previousZoom() goes to
+    QSizeF mLaidOut;   // device size for which mLook was made
+    std::vector<Looks> mOtherLooks;
+    QElapsedTimer mSinceZoom;  // steps of a wheel in quick succession are one change of the zoom
+    bool mDrafting = false;    // mMesh is a draft
     bool mShowOriginal = false;
     bool mPeeking = false;
     bool mPanHeld = false;
