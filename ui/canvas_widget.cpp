@@ -64,8 +64,8 @@ CanvasWidget::CanvasWidget(QWidget* parent) : QWidget(parent), mColours(canvasCo
     connect(&mFrames, &FrameSource::frameReady, this, [this] {
         update();
         reportCursor();
-        emit overviewChanged();
     });
+    connect(&mFrames, &FrameSource::overviewReady, this, &CanvasWidget::overviewChanged);
 }
 
 void CanvasWidget::setSession(DocumentSession* session) {
@@ -109,6 +109,7 @@ void CanvasWidget::reloadMesh() {
     requestFrame();
     update();
     reportCursor();
+    emit overviewChanged();
 }
 
 void CanvasWidget::setDraft(const std::optional<PatchMesh>& draft) {
