@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+
 namespace tessera::render {
 
 namespace {
@@ -92,7 +95,8 @@ bool Texture::resize(int width, int height) {
     return true;
 }
 
-OffscreenTarget::OffscreenTarget(int width, int height) : mFramebuffer(makeFramebuffer()) {
+OffscreenTarget::OffscreenTarget(int width, int height, GLenum format)
+    : mTexture(format), mFramebuffer(makeFramebuffer()) {
     mTexture.resize(width, height);
     glNamedFramebufferTexture(mFramebuffer.name(), GL_COLOR_ATTACHMENT0, mTexture.name(), 0);
 }
@@ -115,6 +119,20 @@ Image OffscreenTarget::read(int channels) const {
             for (int x = 0; x < width; ++x) image.at(x, y, c) = from[size_t(x) * kChannels];
         }
     return image;
+}
+
+void OffscreenTarget::readArgb(std::span<uint32_t> pixels) const {
+    const auto width = size_t(mTexture.width()), height = size_t(mTexture.height());
+    TESSERA_CHECK(pixels.size() == width * height);
+    glGetTextureImage(mTexture.name(), 0, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, GLsizei(pixels.size_bytes()),
+                      pixels.data());
+    // OpenGL's rows are from the bottom.
+    parallelFor(height / 2, 64, [&](size_t begin, size_t end) {
+        for (size_t y = begin; y < end; ++y) {
+            const auto upper = pixels.subspan(y * width, width);
+            std::ranges::swap_ranges(upper, pixels.subspan((height - 1 - y) * width, width));
+        }
+    });
 }
 
 StateScope::StateScope()

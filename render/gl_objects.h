@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -94,18 +95,24 @@ class Texture {
     int mWidth = 0, mHeight = 0;
 };
 
-// A picture to draw into where there is no window: RGBA, 32 bit floats.
+// A picture to draw into where there is no window: RGBA, as 32 bit floats (GL_RGBA32F) or bytes (GL_RGBA8),
+// which is a quarter to read back.
 class OffscreenTarget {
   public:
-    OffscreenTarget(int width, int height);
+    OffscreenTarget(int width, int height, GLenum format = GL_RGBA32F);
+
+    int width() const { return mTexture.width(); }
+    int height() const { return mTexture.height(); }
 
     // Makes it the framebuffer that is drawn to, with a viewport that fills it.
     void bind() const;
     // The first `channels` of the four, rows from the top.
     Image read(int channels) const;
+    // 0xAARRGGBB, rows from the top, width() x height() of them.
+    void readArgb(std::span<uint32_t> pixels) const;
 
   private:
-    Texture mTexture{GL_RGBA32F};
+    Texture mTexture;
     Framebuffer mFramebuffer;
 };
 

@@ -116,6 +116,38 @@ TEST_F(Context, IsLeftAsItWas) {
     EXPECT_GT(target.read(4).at(30, 20, 3), 0);
 }
 
+TEST_F(Context, ErrorsSinceTheLastCallAreToldOnce) {
+    EXPECT_TRUE(checkDrawn());
+    glEnable(GL_TRIANGLES);
+    const auto failed = checkDrawn();
+    ASSERT_FALSE(failed);
+    EXPECT_NE(failed.error().message.find(std::to_string(GL_INVALID_ENUM)), std::string::npos);
+    EXPECT_TRUE(checkDrawn());
+}
+
+TEST_F(Context, BytesAreTheRoundedFloats) {
+    const PatchMesh mesh = testing::curvedMesh(60, 40, 4, 3, 1);
+    auto renderer = Renderer::create();
+    ASSERT_TRUE(renderer);
+    renderer->setMesh(mesh);
+    const View view = wholePicture(mesh, {1, 1});
+    const OffscreenTarget floats(60, 40), bytes(60, 40, GL_RGBA8);
+    for (const OffscreenTarget* target : {&floats, &bytes}) {
+        target->bind();
+        ASSERT_TRUE(renderer->draw(view));
+    }
+    const Image expected = floats.read(4);
+    std::vector<uint32_t> argb(size_t(60 * 40));
+    bytes.readArgb(argb);
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 60; ++x)
+            for (int c = 0; c < 4; ++c) {
+                const uint32_t pixel = argb[size_t(y * 60 + x)];
+                const int value = int(pixel >> (c == 3 ? 24 : 16 - 8 * c) & 0xffU);
+                ASSERT_NEAR(value, 255 * std::clamp(expected.at(x, y, c), 0.F, 1.F), .51) << x << ' ' << y;
+            }
+}
+
 TEST_F(Context, AFrameFillsTheViewportAndNothingElse) {
     const PatchMesh mesh = testing::curvedMesh(30, 20, 4, 3, 1);
     auto renderer = Renderer::create();
