@@ -91,6 +91,12 @@ enum class ActionId {
     NudgeRight,
     NudgeUp,
     NudgeDown,
+    ShowVectorizePanel,
+    ShowRecolourPanel,
+    ShowPalettePanel,
+    ShowSelectionPanel,
+    ShowHistoryPanel,
+    ShowNavigatorPanel,
     CheatSheet,
     About,
     Count
