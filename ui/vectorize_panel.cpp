@@ -317,6 +317,8 @@ void VectorizePanel::showSession(const DocumentSession* session, size_t features
     if (document.difference) {
         add(tr("Mean error"), tr("%1 of 255").arg(locale.toString(document.difference->mae, 'f', 2)));
         add(tr("PSNR"), tr("%1 dB").arg(locale.toString(document.difference->psnr, 'f', 1)));
+    } else if (document.fitted) {
+        add(tr("Mean error"), tr("edited since it was measured"));
     }
     if (!document.report.stages.empty())
         add(tr("Time"), tr("%1 s").arg(locale.toString(secondsOf(document.report), 'f', 1)));
