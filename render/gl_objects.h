@@ -78,7 +78,7 @@ class Buffer {
     size_t mSize = 0;
 };
 
-// A two-dimensional texture of one level, made anew where its size changes.
+// A two-dimensional texture of one level that is made anew where it must be larger.
 class Texture {
   public:
     explicit Texture(GLenum format) : mFormat(format) {}
@@ -86,8 +86,8 @@ class Texture {
     GLuint name() const { return mObject.name(); }
     int width() const { return mWidth; }
     int height() const { return mHeight; }
-    // True where the texture is a new one.
-    bool resize(int width, int height);
+    // Makes it at least so large; true where it is a new one.
+    bool reserve(int width, int height);
 
   private:
     GLenum mFormat;
@@ -101,8 +101,10 @@ class OffscreenTarget {
   public:
     OffscreenTarget(int width, int height, GLenum format = GL_RGBA32F);
 
-    int width() const { return mTexture.width(); }
-    int height() const { return mTexture.height(); }
+    int width() const { return mWidth; }
+    int height() const { return mHeight; }
+    // What was drawn is lost. Cheap where it has been as large before.
+    void resize(int width, int height);
 
     // Makes it the framebuffer that is drawn to, with a viewport that fills it.
     void bind() const;
@@ -114,6 +116,7 @@ class OffscreenTarget {
   private:
     Texture mTexture;
     Framebuffer mFramebuffer;
+    int mWidth = 0, mHeight = 0;  // of the part of the texture that is drawn to
 };
 
 // What a frame changes in the context, put back when it ends: framebuffers, viewport, program, vertex array,

@@ -79,8 +79,10 @@ class GlDrawer : public FrameDrawer {
 
     Result<QImage> draw(const View& view) override {
         if (!makeCurrent()) return failure(ErrorCode::Internal, "the OpenGL context was lost");
-        if (!mTarget || mTarget->width() != view.width || mTarget->height() != view.height)
+        if (!mTarget)
             mTarget.emplace(view.width, view.height, GL_RGBA8);
+        else
+            mTarget->resize(view.width, view.height);
         mTarget->bind();
         if (const auto drawn = mRenderer->draw(view, {.showHidden = false}); !drawn)
             return tl::unexpected<Error>(drawn.error());

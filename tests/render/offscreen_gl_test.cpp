@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "tests/support/gl.h"
@@ -79,7 +80,7 @@ TEST_F(Context, IsLeftAsItWas) {
     const VertexArray vertexArray = makeVertexArray();
     glBindVertexArray(vertexArray.name());
     Texture texture(GL_RGBA8);
-    texture.resize(4, 4);
+    texture.reserve(4, 4);
     glActiveTexture(GL_TEXTURE2);
     glBindTexture(GL_TEXTURE_2D, texture.name());
     glActiveTexture(GL_TEXTURE1);
@@ -123,6 +124,30 @@ TEST_F(Context, ErrorsSinceTheLastCallAreToldOnce) {
     ASSERT_FALSE(failed);
     EXPECT_NE(failed.error().message.find(std::to_string(GL_INVALID_ENUM)), std::string::npos);
     EXPECT_TRUE(checkDrawn());
+}
+
+// The canvas and the overview take turns: neither is drawn into storage that has to be made first.
+TEST_F(Context, AFrameIsTheSameInATargetThatWasLarger) {
+    const PatchMesh mesh = testing::curvedMesh(60, 40, 4, 3, 1);
+    for (const bool subdivision : {false, true}) {
+        auto renderer = Renderer::create();
+        ASSERT_TRUE(renderer);
+        renderer->setMesh(mesh);
+        OffscreenTarget target(120, 50);
+        const auto frame = [&](double scale) {
+            const View view = wholePicture(mesh, {scale, scale});
+            target.resize(view.width, view.height);
+            target.bind();
+            EXPECT_TRUE(renderer->draw(view, {.computeSubdivision = subdivision}));
+            return target.read(4);
+        };
+        const Image small = frame(1), large = frame(2), again = frame(1);
+        EXPECT_EQ(large.width(), 120);
+        EXPECT_EQ(large.height(), 80);
+        ASSERT_EQ(again.width(), 60);
+        ASSERT_EQ(again.height(), 40);
+        for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::ranges::equal(again.plane(c), small.plane(c)));
+    }
 }
 
 TEST_F(Context, BytesAreTheRoundedFloats) {
