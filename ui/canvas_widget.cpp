@@ -264,6 +264,12 @@ void CanvasWidget::zoomTo(double scale) {
     zoomView(view);
 }
 
+void CanvasWidget::zoomOnTo(double scale) {
+    ViewTransform view = mLook.view;
+    view.setScaleAt(deviceRect().center(), scale);
+    zoomViewOn(view);
+}
+
 CanvasWidget::Look CanvasWidget::fittedLook() const {
     ViewTransform fitted = mLook.view;
     const double ratio = devicePixelRatioF();
@@ -272,8 +278,7 @@ CanvasWidget::Look CanvasWidget::fittedLook() const {
 }
 
 void CanvasWidget::fit() {
-    mLookBefore = mLook;
-    mSinceZoom.invalidate();
+    rememberLook();
     look(fittedLook());
 }
 
@@ -298,8 +303,7 @@ void CanvasWidget::centreOn(QPointF image) {
 void CanvasWidget::previousZoom() {
     Look before = mLookBefore.fitted ? fittedLook() : mLookBefore;
     before.view.keepInView(pictureSize(), deviceSize());
-    mLookBefore = mLook;
-    mSinceZoom.invalidate();
+    rememberLook();
     look(before);
 }
 
@@ -325,9 +329,13 @@ void CanvasWidget::changeViewAsAsked(const ViewRequest& request) {
     }
 }
 
-void CanvasWidget::zoomView(const ViewTransform& view) {
+void CanvasWidget::rememberLook() {
     mLookBefore = mLook;
     mSinceZoom.invalidate();
+}
+
+void CanvasWidget::zoomView(const ViewTransform& view) {
+    rememberLook();
     changeView(view);
 }
 

@@ -48,6 +48,8 @@ class CanvasWidget : public QWidget {
     // Zooms by steps about the middle of the canvas.
     void zoomStep(bool larger);
     void zoomTo(double scale);
+    // The same as a part of what a slider does: to previousZoom() its steps are one change.
+    void zoomOnTo(double scale);
     void fit();
     // Makes a part of the picture (image px) fill the canvas.
     void showRect(const QRectF& image);
@@ -152,6 +154,7 @@ class CanvasWidget : public QWidget {
     void hoverAgain(Qt::KeyboardModifiers modifiers);
     bool dragsView(const QMouseEvent& event) const;
     void dragView(QPointF position);
+    void rememberLook();
     // Zooms at once, or goes on with what a wheel has begun: the view before is that before all of it.
     void zoomView(const ViewTransform& view);
     void zoomViewOn(const ViewTransform& view);

@@ -228,7 +228,7 @@ void MainWindow::connectPanels() {
     connect(mSelection, &SelectionPanel::said, this, &MainWindow::say);
     connect(mPalette, &PalettePanel::highlighted, mCanvas, &CanvasWidget::setHighlight);
     connect(mNavigator, &Navigator::moveRequested, mCanvas, &CanvasWidget::centreOn);
-    connect(mNavigator, &Navigator::zoomRequested, mCanvas, &CanvasWidget::zoomTo);
+    connect(mNavigator, &Navigator::zoomRequested, mCanvas, &CanvasWidget::zoomOnTo);
     connect(mRecent, &QMenu::aboutToShow, this, &MainWindow::fillRecentMenu);
     mStart->setRecentFiles(mSettings.recentFiles());
     connect(mStart, &StartPage::openRequested, this, &MainWindow::open);

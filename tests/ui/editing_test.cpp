@@ -10,6 +10,7 @@
 #include "core/export/rasterize.h"
 #include "core/mesh/mesh_validate.h"
 #include "tests/ui/main_window_fixture.h"
+#include "ui/panels/gesture_slider.h"
 #include "ui/status_bar.h"
 #include "ui/theme.h"
 
@@ -253,6 +254,22 @@ TEST_F(Editing, EachTabKeepsItsViewAndItsZoomBefore) {
     QTest::qWait(20);
     key(Qt::Key_QuoteLeft);
     EXPECT_EQ(canvas().view().scale(), first.scale()) << "a resize is no zoom";
+}
+
+TEST_F(Editing, ADragOfTheNavigatorsSliderIsOneZoom) {
+    auto* dock = window->findChild<QWidget*>("navigatorDock");
+    auto* zoom = dock->findChild<GestureSlider*>("zoom");
+    ASSERT_NE(zoom, nullptr);
+    const ViewTransform before = canvas().view();
+    const int y = zoom->height() / 2;
+    const QPoint from(int(zoom->xOf(zoom->value())), y);
+    QTest::mousePress(zoom, Qt::LeftButton, {}, from);
+    for (int i = 1; i <= 6; ++i) QTest::mouseMove(zoom, from + QPoint(6 * i, 0));
+    QTest::mouseRelease(zoom, Qt::LeftButton, {}, from + QPoint(36, 0));
+    EXPECT_GT(canvas().view().scale(), before.scale());
+    canvas().setFocus();
+    key(Qt::Key_QuoteLeft);
+    EXPECT_EQ(canvas().view(), before);
 }
 
 TEST_F(Editing, TheColourUnderTheCursorIsTheOneSeenThere) {
