@@ -7,6 +7,7 @@
 #include <QApplication>
 #include <QComboBox>
 #include <QDockWidget>
+#include <QDoubleSpinBox>
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QMainWindow>
@@ -65,6 +66,12 @@ bool finishes(const QWidget& widget, const QKeyEvent& event) {
     return enters && !qobject_cast<const QAbstractButton*>(&widget);
 }
 
+// Forgets what has been typed into a field for numbers and is no value yet.
+void takeBackTyping(QWidget& field) {
+    if (auto* whole = qobject_cast<QSpinBox*>(&field)) whole->setValue(whole->value());
+    if (auto* real = qobject_cast<QDoubleSpinBox*>(&field)) real->setValue(real->value());
+}
+
 }  // namespace
 
 bool isKeyOf(const QKeyEvent& event, const QAction& action) {
@@ -93,7 +100,7 @@ bool CanvasKeys::eventFilter(QObject* watched, QEvent* event) {
         (event->type() == QEvent::WindowDeactivate && watched == &mWindow && !mWindow.isActiveWindow()))
         releaseAll();
     if (!watched->isWidgetType()) return false;
-    const auto& widget = static_cast<QWidget&>(*watched);
+    auto& widget = static_cast<QWidget&>(*watched);
     switch (event->type()) {
         case QEvent::KeyPress: {
             const auto& key = static_cast<QKeyEvent&>(*event);
@@ -103,7 +110,9 @@ bool CanvasKeys::eventFilter(QObject* watched, QEvent* event) {
             }
             const QWidget* focus = QApplication::focusWidget();
             if (!uses(focus && inWindow(*focus) ? *focus : widget, key) && press(key)) return true;
-            if (&widget == focus && finishes(widget, key)) handBackSoon();
+            if (&widget != focus || !finishes(widget, key)) return false;
+            if (key.key() == Qt::Key_Escape) takeBackTyping(widget);
+            handBackSoon();
             return false;
         }
         case QEvent::ShortcutOverride: {

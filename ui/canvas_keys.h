@@ -17,7 +17,8 @@ bool isKeyOf(const QKeyEvent& event, const QAction& action);
 
 // Watches a window with its floating panels.
 //
-// Panels and bars hand the keys back: after a click that types nothing, and at Return or Escape in a field.
+// Panels and bars hand the keys back: after a click that types nothing, and at Return or Escape in a field,
+// which takes back what was being typed.
 // Lists keep them, as they have keys of their own, and so does what was reached with Tab. The keys that are
 // held act wherever the focus is, except where they would type or press a button. In a field for numbers what
 // is no part of a number is a shortcut, and undo is the document's unless there is typing to take back.

@@ -4,6 +4,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDockWidget>
+#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QLineEdit>
 #include <QSpinBox>
@@ -100,6 +101,27 @@ TEST_F(CanvasKeysTest, WhatIsTypedIsNoCommand) {
     click(Qt::Key_Return);
     EXPECT_EQ(hex->text(), "#ffaabb");
     EXPECT_TRUE(canvasHasKeys());
+}
+
+TEST_F(CanvasKeysTest, EscapeTakesBackWhatWasBeingTyped) {
+    click(Qt::Key_A, Qt::ControlModifier);
+    const int steps = session()->history().count();
+    auto* hex = shown<QWidget>("recolourDock", "mean")->findChild<QLineEdit*>("hex");
+    const QString before = hex->text();
+    hex->setFocus();
+    hex->selectAll();
+    for (const auto key : {Qt::Key_F, Qt::Key_A, Qt::Key_B}) click(key);
+    click(Qt::Key_Escape);
+    EXPECT_TRUE(canvasHasKeys());
+    EXPECT_EQ(hex->text(), before);
+    auto* feather = shown<QDoubleSpinBox>("recolourDock", "feather");
+    feather->setFocus();
+    feather->selectAll();
+    click(Qt::Key_9);
+    click(Qt::Key_Escape);
+    EXPECT_TRUE(canvasHasKeys());
+    EXPECT_EQ(feather->value(), 0);
+    EXPECT_EQ(session()->history().count(), steps);
 }
 
 TEST_F(CanvasKeysTest, AFieldForNumbersTakesNumbersAlone) {
@@ -214,6 +236,21 @@ TEST_F(CanvasKeysTest, AGestureThatWaitsForMoreIsUndoneByUndo) {
     EXPECT_FALSE(session()->editing());
     EXPECT_EQ(session()->history().count(), steps + 1);
     EXPECT_EQ(session()->history().redoText(), "Hue");
+}
+
+TEST_F(CanvasKeysTest, AGestureThatWaitsForMoreIsAskedAboutWhenTheWindowCloses) {
+    window->saveTo(folder.filePath("disk.tessera"));
+    ASSERT_TRUE(idle());
+    ASSERT_FALSE(session()->modified());
+    click(Qt::Key_A, Qt::ControlModifier);
+    auto* hue = shown<GestureSlider>("recolourDock", "hue");
+    hue->setFocus();
+    click(Qt::Key_Right);
+    ASSERT_TRUE(session()->editing());
+    answer(QMessageBox::Cancel);
+    EXPECT_FALSE(window->close());
+    EXPECT_TRUE(session()->modified());
+    EXPECT_TRUE(window->isVisible());
 }
 
 TEST_F(CanvasKeysTest, FullScreenGoesBackToMaximized) {
