@@ -45,6 +45,13 @@ class CanvasKeysTest : public MainWindowTest {
     bool canvasHasKeys() {
         return QTest::qWaitFor([&] { return canvas().hasFocus(); }, 500);
     }
+    // The panel is refreshed when there is time.
+    GestureSlider* hueOfEverything() {
+        click(Qt::Key_A, Qt::ControlModifier);
+        auto* hue = shown<GestureSlider>("recolourDock", "hue");
+        EXPECT_TRUE(QTest::qWaitFor([&] { return hue->isEnabled() && hue->isVisible(); }, kWaitMs));
+        return hue;
+    }
     // Drags a slider to a share of its length.
     void drag(GestureSlider* slider, double share) {
         const int y = slider->height() / 2;
@@ -55,8 +62,7 @@ class CanvasKeysTest : public MainWindowTest {
 };
 
 TEST_F(CanvasKeysTest, ASliderHandsTheKeysBack) {
-    click(Qt::Key_A, Qt::ControlModifier);
-    auto* hue = shown<GestureSlider>("recolourDock", "hue");
+    auto* hue = hueOfEverything();
     drag(hue, .8);
     EXPECT_EQ(session()->history().undoText(), "Hue");
     ASSERT_TRUE(canvasHasKeys());
@@ -104,11 +110,12 @@ TEST_F(CanvasKeysTest, WhatIsTypedIsNoCommand) {
 }
 
 TEST_F(CanvasKeysTest, EscapeTakesBackWhatWasBeingTyped) {
-    click(Qt::Key_A, Qt::ControlModifier);
+    hueOfEverything();
     const int steps = session()->history().count();
     auto* hex = shown<QWidget>("recolourDock", "mean")->findChild<QLineEdit*>("hex");
     const QString before = hex->text();
     hex->setFocus();
+    ASSERT_TRUE(hex->hasFocus());
     hex->selectAll();
     for (const auto key : {Qt::Key_F, Qt::Key_A, Qt::Key_B}) click(key);
     click(Qt::Key_Escape);
@@ -226,10 +233,10 @@ TEST_F(CanvasKeysTest, TipsOfButtonsSayTheKeysOfNow) {
 }
 
 TEST_F(CanvasKeysTest, AGestureThatWaitsForMoreIsUndoneByUndo) {
-    click(Qt::Key_A, Qt::ControlModifier);
-    auto* hue = shown<GestureSlider>("recolourDock", "hue");
+    auto* hue = hueOfEverything();
     const int steps = session()->history().count();
     hue->setFocus();
+    ASSERT_TRUE(hue->hasFocus());
     click(Qt::Key_Right);
     ASSERT_TRUE(session()->editing()) << "it waits for the next step";
     click(Qt::Key_Z, Qt::ControlModifier);
@@ -242,9 +249,9 @@ TEST_F(CanvasKeysTest, AGestureThatWaitsForMoreIsAskedAboutWhenTheWindowCloses) 
     window->saveTo(folder.filePath("disk.tessera"));
     ASSERT_TRUE(idle());
     ASSERT_FALSE(session()->modified());
-    click(Qt::Key_A, Qt::ControlModifier);
-    auto* hue = shown<GestureSlider>("recolourDock", "hue");
+    auto* hue = hueOfEverything();
     hue->setFocus();
+    ASSERT_TRUE(hue->hasFocus());
     click(Qt::Key_Right);
     ASSERT_TRUE(session()->editing());
     answer(QMessageBox::Cancel);
