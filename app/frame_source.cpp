@@ -13,6 +13,8 @@ namespace tessera {
 namespace {
 
 constexpr double kOverviewPx = 1024;
+// How long nothing else is to be drawn before a drawer draws the overview.
+constexpr int kRestMs = 100;
 
 Rect united(const Rect& a, const Rect& b) {
     return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
@@ -84,8 +86,7 @@ void FrameSource::request(const View& view) {
 }
 
 bool FrameSource::settled() const {
-    return mMesh.patchCount() == 0 || (mLatest && mWish && sameView(mLatest->view, *mWish) &&
-                                       mLatest->samples == kPictureSamples && !mDirty && !mOverviewOld);
+    return mMesh.patchCount() == 0 || (mWish && mLatest && !wantsView() && !mOverviewOld);
 }
 
 void FrameSource::startNext() {
@@ -115,19 +116,32 @@ View FrameSource::overviewView() const {
     return wholePicture(mMesh, {scale, scale});
 }
 
+bool FrameSource::wantsView() const {
+    return mWish && mWish->width > 0 && mWish->height > 0 &&
+           (!mLatest || !sameView(mLatest->view, *mWish) || mLatest->samples != kPictureSamples || mDirty);
+}
+
 bool FrameSource::drawAtOnce() {
-    if (!mWish || mWish->width <= 0 || mWish->height <= 0 || settled()) return true;
-    for (const auto& [view, frame] : {std::pair{*mWish, &mLatest}, std::pair{overviewView(), &mOverview}}) {
-        Result<QImage> image = mDrawer->draw(view);
-        if (!image) {
-            mDrawer.reset();
-            emit drawerLost(QString::fromStdString(image.error().message));
-            return false;
-        }
-        *frame = Frame{std::move(*image), view, kPictureSamples};
+    const bool view = wantsView();
+    if (!view && mOverview && !mOverviewOld) return true;
+    const View drawn = view ? *mWish : overviewView();
+    Result<QImage> image = mDrawer->draw(drawn);
+    if (!image) {
+        mDrawer.reset();
+        emit drawerLost(QString::fromStdString(image.error().message));
+        return false;
     }
-    mDirty.reset();
-    mOverviewOld = false;
+    Frame frame{std::move(*image), drawn, kPictureSamples};
+    if (view) {
+        mDirty.reset();
+        keepLatest(std::move(frame));
+    } else {
+        mOverviewOld = false;
+        keepOverview(std::move(frame));
+    }
+    // It is seen where a view has not been drawn yet, and small: a hand that moves something does not wait
+    // for it.
+    if (!mOverview || mOverviewOld) mDrawSoon.start(kRestMs);
     emit frameReady();
     return true;
 }
@@ -147,6 +161,11 @@ void FrameSource::draw(const View& view, int samples, void (FrameSource::*keep)(
         }
         startNext();
     });
+}
+
+void FrameSource::keepOverview(Frame frame) {
+    mOverview = std::move(frame);
+    emit overviewReady();
 }
 
 void FrameSource::keepPart(Frame part) {

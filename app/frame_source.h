@@ -15,9 +15,10 @@
 namespace tessera {
 
 // Two frames are kept: a small one of the whole picture, so that panning and zooming out never meet a hole,
-// and the last one of the wished view. A view is drawn with one sample a pixel first and then with
-// kPictureSamples; a new wish interrupts the second drawing but not the first, so that the picture keeps up
-// with a hand that does not rest.
+// and the last one of the wished view. On a worker a view is drawn with one sample a pixel first and then
+// with kPictureSamples; a new wish interrupts the second drawing but not the first, so that the picture keeps
+// up with a hand that does not rest. A drawer draws views at full quality, and the small one when there is a
+// rest.
 class FrameSource : public QObject {
     Q_OBJECT
 
@@ -41,7 +42,9 @@ class FrameSource : public QObject {
     bool settled() const;
 
   signals:
+    // Either frame is another one; after overviewReady() where it is that one.
     void frameReady();
+    void overviewReady();
     // The drawer has failed and is gone; workers go on.
     void drawerLost(const QString& reason);
 
@@ -49,10 +52,12 @@ class FrameSource : public QObject {
     void startNext();
     void startSoon();
     View overviewView() const;
-    // Whether the drawer has drawn all that was wished.
+    // Whether latest() is not the wished view at full quality.
+    bool wantsView() const;
+    // Whether the drawer has drawn what was to be drawn next.
     bool drawAtOnce();
     void draw(const View& view, int samples, void (FrameSource::*keep)(Frame));
-    void keepOverview(Frame frame) { mOverview = std::move(frame); }
+    void keepOverview(Frame frame);
     void keepLatest(Frame frame) { mLatest = std::move(frame); }
     void keepPart(Frame part);
 

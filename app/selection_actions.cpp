@@ -52,14 +52,32 @@ void selectSimilar(DocumentSession& session, const WandOptions& options) {
     session.selection().setPatches(united(seeds, found));
 }
 
+PatchSet selectionsPatches(const DocumentSession& session) {
+    const HalfedgeMesh& mesh = session.document().mesh.connectivity();
+    const Selection& selection = session.selection();
+    std::vector<PatchId> found = selection.patches();
+    const auto addSides = [&](EdgeId e) {
+        const HalfedgeId h = HalfedgeMesh::halfedge(e);
+        for (const HalfedgeId side : {h, HalfedgeMesh::twin(h)}) found.push_back(mesh.face(side));
+    };
+    for (const EdgeId e : selection.curves()) addSides(e);
+    for (const ControlPointRef& point : selection.points()) {
+        if (point.patch.valid()) found.push_back(point.patch);
+        if (point.halfedge.valid()) addSides(HalfedgeMesh::edge(point.halfedge));
+        if (point.vertex.valid())
+            mesh.forEachOutgoing(point.vertex, [&](HalfedgeId h) { found.push_back(mesh.face(h)); });
+    }
+    std::erase_if(found, [](PatchId p) { return !p.valid(); });
+    return patchSet(std::move(found));
+}
+
 void storeSelection(DocumentSession& session, const QString& name) {
     const PatchSet& patches = session.selection().patches();
     if (name.isEmpty() || patches.empty()) return;
     editStored(session, QObject::tr("Store Selection"), [&](std::vector<NamedSelection>& stored) {
         const NamedSelection selection{name.toStdString(), patches};
-        const auto old = std::find_if(stored.begin(), stored.end(), [&](const NamedSelection& s) {
-            return s.name == selection.name;
-        });
+        const auto old = std::find_if(stored.begin(), stored.end(),
+                                      [&](const NamedSelection& s) { return s.name == selection.name; });
         if (old != stored.end())
             *old = selection;
         else

@@ -16,6 +16,9 @@ void shrinkSelection(DocumentSession& session);
 // Adds what the wand finds from the selected patches (from those that it has not found already).
 void selectSimilar(DocumentSession& session, const WandOptions& options);
 
+// The patches that are selected, or that have a selected curve or point on them.
+PatchSet selectionsPatches(const DocumentSession& session);
+
 // Named selections are parts of the document: each of these is a step of the history. Names are not empty and
 // all different; storing under a name that exists replaces it.
 void storeSelection(DocumentSession& session, const QString& name);

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+
 namespace tessera::render {
 
 namespace {
@@ -79,8 +82,10 @@ void Buffer::write(size_t offset, const void* bytes, size_t count) {
     glNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(count), bytes);
 }
 
-bool Texture::resize(int width, int height) {
-    if (width == mWidth && height == mHeight) return false;
+bool Texture::reserve(int width, int height) {
+    if (width <= mWidth && height <= mHeight) return false;
+    width = std::max(width, mWidth);
+    height = std::max(height, mHeight);
     GLuint fresh = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &fresh);
     mObject = GlObject<deleteTexture>(fresh);
@@ -92,22 +97,29 @@ bool Texture::resize(int width, int height) {
     return true;
 }
 
-OffscreenTarget::OffscreenTarget(int width, int height) : mFramebuffer(makeFramebuffer()) {
-    mTexture.resize(width, height);
-    glNamedFramebufferTexture(mFramebuffer.name(), GL_COLOR_ATTACHMENT0, mTexture.name(), 0);
+OffscreenTarget::OffscreenTarget(int width, int height, GLenum format)
+    : mTexture(format), mFramebuffer(makeFramebuffer()) {
+    resize(width, height);
+}
+
+void OffscreenTarget::resize(int width, int height) {
+    mWidth = width;
+    mHeight = height;
+    if (mTexture.reserve(width, height))
+        glNamedFramebufferTexture(mFramebuffer.name(), GL_COLOR_ATTACHMENT0, mTexture.name(), 0);
 }
 
 void OffscreenTarget::bind() const {
     glBindFramebuffer(GL_FRAMEBUFFER, mFramebuffer.name());
-    glViewport(0, 0, mTexture.width(), mTexture.height());
+    glViewport(0, 0, mWidth, mHeight);
 }
 
 Image OffscreenTarget::read(int channels) const {
     constexpr size_t kChannels = 4;
-    const int width = mTexture.width(), height = mTexture.height();
+    const int width = mWidth, height = mHeight;
     std::vector<float> pixels(size_t(width) * size_t(height) * kChannels);
-    glGetTextureImage(mTexture.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(pixels.size() * sizeof(float)),
-                      pixels.data());
+    glGetTextureSubImage(mTexture.name(), 0, 0, 0, 0, width, height, 1, GL_RGBA, GL_FLOAT,
+                         GLsizei(pixels.size() * sizeof(float)), pixels.data());
     Image image(width, height, channels);
     for (int c = 0; c < channels; ++c)
         for (int y = 0; y < height; ++y) {
@@ -115,6 +127,20 @@ Image OffscreenTarget::read(int channels) const {
             for (int x = 0; x < width; ++x) image.at(x, y, c) = from[size_t(x) * kChannels];
         }
     return image;
+}
+
+void OffscreenTarget::readArgb(std::span<uint32_t> pixels) const {
+    const auto width = size_t(mWidth), height = size_t(mHeight);
+    TESSERA_CHECK(pixels.size() == width * height);
+    glGetTextureSubImage(mTexture.name(), 0, 0, 0, 0, mWidth, mHeight, 1, GL_BGRA,
+                         GL_UNSIGNED_INT_8_8_8_8_REV, GLsizei(pixels.size_bytes()), pixels.data());
+    // OpenGL's rows are from the bottom.
+    parallelFor(height / 2, 64, [&](size_t begin, size_t end) {
+        for (size_t y = begin; y < end; ++y) {
+            const auto upper = pixels.subspan(y * width, width);
+            std::ranges::swap_ranges(upper, pixels.subspan((height - 1 - y) * width, width));
+        }
+    });
 }
 
 StateScope::StateScope()

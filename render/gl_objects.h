@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -77,7 +78,7 @@ class Buffer {
     size_t mSize = 0;
 };
 
-// A two-dimensional texture of one level, made anew where its size changes.
+// A two-dimensional texture of one level that is made anew where it must be larger.
 class Texture {
   public:
     explicit Texture(GLenum format) : mFormat(format) {}
@@ -85,8 +86,8 @@ class Texture {
     GLuint name() const { return mObject.name(); }
     int width() const { return mWidth; }
     int height() const { return mHeight; }
-    // True where the texture is a new one.
-    bool resize(int width, int height);
+    // Makes it at least so large; true where it is a new one.
+    bool reserve(int width, int height);
 
   private:
     GLenum mFormat;
@@ -94,19 +95,28 @@ class Texture {
     int mWidth = 0, mHeight = 0;
 };
 
-// A picture to draw into where there is no window: RGBA, 32 bit floats.
+// A picture to draw into where there is no window: RGBA, as 32 bit floats (GL_RGBA32F) or bytes (GL_RGBA8),
+// which is a quarter to read back.
 class OffscreenTarget {
   public:
-    OffscreenTarget(int width, int height);
+    OffscreenTarget(int width, int height, GLenum format = GL_RGBA32F);
+
+    int width() const { return mWidth; }
+    int height() const { return mHeight; }
+    // What was drawn is lost. Cheap where it has been as large before.
+    void resize(int width, int height);
 
     // Makes it the framebuffer that is drawn to, with a viewport that fills it.
     void bind() const;
     // The first `channels` of the four, rows from the top.
     Image read(int channels) const;
+    // 0xAARRGGBB, rows from the top, width() x height() of them.
+    void readArgb(std::span<uint32_t> pixels) const;
 
   private:
-    Texture mTexture{GL_RGBA32F};
+    Texture mTexture;
     Framebuffer mFramebuffer;
+    int mWidth = 0, mHeight = 0;  // of the part of the texture that is drawn to
 };
 
 // What a frame changes in the context, put back when it ends: framebuffers, viewport, program, vertex array,

@@ -18,8 +18,9 @@ struct IndexRange {
     bool operator==(const IndexRange&) const = default;
 };
 
-// Sorts the indices and joins those with at most `gap` unchanged ones between them.
-std::vector<IndexRange> coalesced(std::vector<uint32_t>& indices, size_t gap);
+// Sorts the indices and joins those below `count` with at most `gap` unchanged ones between them. Those from
+// `count` on were changed before the records became fewer.
+std::vector<IndexRange> coalesced(std::vector<uint32_t>& indices, size_t count, size_t gap);
 
 template <class Record>
 class MirrorBuffer {
@@ -51,7 +52,7 @@ class MirrorBuffer {
             mDirty.clear();
             if (!mRecords.empty()) bytes += write({0, mRecords.size()});
         }
-        for (const IndexRange& range : coalesced(mDirty, kGap)) bytes += write(range);
+        for (const IndexRange& range : coalesced(mDirty, mRecords.size(), kGap)) bytes += write(range);
         mDirty.clear();
         return bytes;
     }

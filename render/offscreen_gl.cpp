@@ -131,4 +131,15 @@ Result<void> checkCurrentContext() {
     return {};
 }
 
+Result<void> checkDrawn() {
+    if (glGetGraphicsResetStatus() != GL_NO_ERROR)
+        return failure(ErrorCode::Internal, "the graphics card was reset");
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR) return {};
+    if (error == GL_OUT_OF_MEMORY)
+        return failure(ErrorCode::Internal, "the graphics card has too little memory");
+    if (error == GL_CONTEXT_LOST) return failure(ErrorCode::Internal, "the OpenGL context was lost");
+    return failure(ErrorCode::Internal, "the OpenGL driver reports error " + std::to_string(error));
+}
+
 }  // namespace tessera::render

@@ -37,4 +37,8 @@ GlDevice currentDevice();
 // needs.
 Result<void> checkCurrentContext();
 
+// Whether what has been drawn since the last call is there: Internal, with a sentence that says why not,
+// where the context was lost or memory ran out. Nothing will be drawn from then on.
+Result<void> checkDrawn();
+
 }  // namespace tessera::render

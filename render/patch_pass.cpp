@@ -9,7 +9,9 @@
 namespace tessera::render {
 
 void VisibilityBuffer::resize(int width, int height) {
-    if (mTexture.resize(width, height))
+    mWidth = width;
+    mHeight = height;
+    if (mTexture.reserve(width, height))
         glNamedFramebufferTexture(mFramebuffer.name(), GL_COLOR_ATTACHMENT0, mTexture.name(), 0);
 }
 

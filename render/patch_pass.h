@@ -17,12 +17,13 @@ class VisibilityBuffer {
     // Makes it the framebuffer that is drawn to, without a patch anywhere.
     void begin() const;
     const Texture& texture() const { return mTexture; }
-    int width() const { return mTexture.width(); }
-    int height() const { return mTexture.height(); }
+    int width() const { return mWidth; }
+    int height() const { return mHeight; }
 
   private:
     Texture mTexture{GL_RG32UI};
     Framebuffer mFramebuffer;
+    int mWidth = 0, mHeight = 0;  // of the part of the texture that is drawn to
 };
 
 class PatchPass {

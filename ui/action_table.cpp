@@ -11,7 +11,7 @@ namespace tessera {
 
 namespace {
 
-constexpr unsigned kCheckable = 1, kEndsGroup = 2;
+constexpr unsigned kCheckable = 1, kEndsGroup = 2, kKeyOnly = 4;
 
 struct ActionSpec {
     ActionId id;
@@ -95,6 +95,7 @@ const ActionSpec kActions[] = {
      "Show what is selected as large as fits"},
     {ActionId::PreviousZoom, "previousZoom", "&View", "Pre&vious Zoom", "`",
      "Go back to the zoom before, or forth again", kEndsGroup},
+    {ActionId::Pan, "pan", "&View", "Move the Picture (held)", "Space", "Hold it and drag", kKeyOnly},
     {ActionId::ShowFeatures, "showFeatures", "&View", "F&eatures", "Alt+1",
      "Draw the curves along which colours jump", kCheckable, "features"},
     {ActionId::ShowBlur, "showBlur", "&View", "Features by &Blur", "Alt+4",
@@ -112,7 +113,9 @@ const ActionSpec kActions[] = {
     {ActionId::OutlineView, "outlineView", "&View", "Cycle &Outline View", "Ctrl+5",
      "Features, then patch edges too, then control points too, then none", kEndsGroup},
     {ActionId::ShowOriginal, "showOriginal", "&View", "Show O&riginal Photo", "",
-     "Show the photo in place of the vector image; hold O to peek at it", kCheckable, "picture"},
+     "Show the photo in place of the vector image", kCheckable, "picture"},
+    {ActionId::PeekOriginal, "peekOriginal", "&View", "See the Original (held)", "O",
+     "Show the photo for as long as it is held", kKeyOnly},
     {ActionId::Split, "split", "&View", "Split Vie&w", "Ctrl+6",
      "The photo left of a line that can be dragged, the vector image right of it", kCheckable, "split-view"},
     {ActionId::XRay, "xray", "&View", "&X-Ray", "Alt+6", "The photo in a lens at the pointer",
@@ -144,12 +147,27 @@ const ActionSpec kActions[] = {
      "Draw a gradient across the selection", kCheckable, "gradient"},
     {ActionId::ToolBlur, "toolBlur", "&Tools", "&Soften", "S",
      "Make a feature softer or sharper by its handle", kCheckable, "blur"},
-    {ActionId::ToolHand, "toolHand", "&Tools", "&Hand", "H", "Move the view; hold Space in any tool",
-     kCheckable, "hand"},
+    {ActionId::ToolHand, "toolHand", "&Tools", "&Hand", "H", "Move the view", kCheckable, "hand"},
     {ActionId::ToolZoom, "toolZoom", "&Tools", "&Zoom", "Z", "Zoom in by click or marquee; Alt zooms out",
      kCheckable, "zoom"},
     {ActionId::LargerBrush, "largerBrush", "&Tools", "Lar&ger Brush", "]", "Make the brush larger"},
     {ActionId::SmallerBrush, "smallerBrush", "&Tools", "Smalle&r Brush", "[", "Make the brush smaller"},
+    {ActionId::NudgeLeft, "nudgeLeft", "&Tools", "Nudge Left", "Left", "Move what is selected", kKeyOnly},
+    {ActionId::NudgeRight, "nudgeRight", "&Tools", "Nudge Right", "Right", "Move what is selected", kKeyOnly},
+    {ActionId::NudgeUp, "nudgeUp", "&Tools", "Nudge Up", "Up", "Move what is selected", kKeyOnly},
+    {ActionId::NudgeDown, "nudgeDown", "&Tools", "Nudge Down", "Down", "Move what is selected", kKeyOnly},
+    {ActionId::ShowVectorizePanel, "showVectorizePanel", "&Window", "&Vectorize", "",
+     "The panel that turns photos into patches", kCheckable},
+    {ActionId::ShowRecolourPanel, "showRecolourPanel", "&Window", "&Recolour", "",
+     "The panel that recolours the selection", kCheckable},
+    {ActionId::ShowPalettePanel, "showPalettePanel", "&Window", "&Palette", "",
+     "The panel of dominant colours and swatches", kCheckable},
+    {ActionId::ShowSelectionPanel, "showSelectionPanel", "&Window", "&Selection", "",
+     "The panel of what is selected and of named selections", kCheckable},
+    {ActionId::ShowHistoryPanel, "showHistoryPanel", "&Window", "&History", "",
+     "The panel of the steps that can be gone back", kCheckable},
+    {ActionId::ShowNavigatorPanel, "showNavigatorPanel", "&Window", "&Navigator", "",
+     "The panel that shows where in the picture one is", kCheckable},
     {ActionId::CheatSheet, "cheatSheet", "&Help", "&Keys and Gestures", "?", "All keys on one sheet", 0,
      "keyboard"},
     {ActionId::About, "about", "&Help", "&About Tessera", "", "What this program is"},
@@ -186,7 +204,7 @@ ActionTable::ActionTable(QWidget* window, const Settings& settings) {
         action->setCheckable(spec.flags & kCheckable);
         action->setStatusTip(translated(spec.tip));
         // So that keys work with the menu bar hidden, and none is lost in a panel.
-        window->addAction(action);
+        if (!(spec.flags & kKeyOnly)) window->addAction(action);
         mActions[size_t(spec.id)] = action;
     }
     applyKeys(settings);
@@ -224,6 +242,7 @@ void ActionTable::fill(QMenuBar* bar, QMenu* recent) const {
     const char* current = "";
     QMenu* menu = nullptr;
     for (const ActionSpec& spec : kActions) {
+        if (spec.flags & kKeyOnly) continue;
         if (qstrcmp(current, spec.menu) != 0) menu = bar->addMenu(translated(current = spec.menu));
         QAction* action = mActions[size_t(spec.id)];
         menu->addAction(action);

@@ -56,6 +56,7 @@ enum class ActionId {
     Zoom100,
     FitSelection,
     PreviousZoom,
+    Pan,  // held
     ShowFeatures,
     ShowBlur,
     ShowImportance,
@@ -65,6 +66,7 @@ enum class ActionId {
     ShowHeatMap,
     OutlineView,
     ShowOriginal,
+    PeekOriginal,  // held
     Split,
     XRay,
     Rulers,
@@ -85,6 +87,16 @@ enum class ActionId {
     ToolZoom,
     LargerBrush,
     SmallerBrush,
+    NudgeLeft,  // and those that follow: with the canvas alone
+    NudgeRight,
+    NudgeUp,
+    NudgeDown,
+    ShowVectorizePanel,
+    ShowRecolourPanel,
+    ShowPalettePanel,
+    ShowSelectionPanel,
+    ShowHistoryPanel,
+    ShowNavigatorPanel,
     CheatSheet,
     About,
     Count
@@ -96,6 +108,7 @@ constexpr size_t kActionCount = size_t(ActionId::Count);
 ActionId actionOf(ToolId tool);
 
 // The actions of one window, made from the table. Keys are those that the user chose, or else the preset's.
+// Those that are held or repeated are in no menu and trigger nothing: they are there for their keys.
 class ActionTable {
   public:
     ActionTable(QWidget* window, const Settings& settings);

@@ -56,7 +56,6 @@ AmountField::AmountField(Settings& settings, QWidget* parent)
     mKind->setCurrentIndex(known == kNames.end() ? Patches : int(known - kNames.begin()));
     choose(kind());
     connect(mKind, &QComboBox::currentIndexChanged, this, &AmountField::choose);
-    connect(mKind, &QComboBox::activated, this, &AmountField::editingDone);
 }
 
 void AmountField::makeFields() {
@@ -90,7 +89,6 @@ void AmountField::makeFields() {
         field->setMinimumHeight(kFieldHeightPx);
         field->setFocusPolicy(Qt::StrongFocus);  // not by the wheel: it shall not change while one scrolls
         field->setAccessibleName(mKind->itemText(mStack->addWidget(field)));
-        connect(field, &QAbstractSpinBox::editingFinished, this, &AmountField::editingDone);
     }
     connect(mPatches, &QSpinBox::valueChanged, this, [this](int patches) {
         mSettings.setPatches(patches);

@@ -41,8 +41,6 @@ class AmountField : public QWidget {
     // The slider has been moved: the draft of patches() would be good to see.
     void draftWanted();
     void draftDropped();
-    // The user has finished with a field.
-    void editingDone();
 
   protected:
     void keyPressEvent(QKeyEvent* event) override;

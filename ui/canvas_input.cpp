@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/canvas_keys.h"
 #include "ui/canvas_widget.h"
 
 namespace tessera {
@@ -27,24 +28,15 @@ ToolModifiers modifiersOf(Qt::KeyboardModifiers modifiers) {
             .control = modifiers.testFlag(Qt::ControlModifier)};
 }
 
-ToolKeyCode codeOf(int key) {
-    switch (key) {
-        case Qt::Key_Escape:
-            return ToolKeyCode::Escape;
-        case Qt::Key_Return:
-        case Qt::Key_Enter:
-            return ToolKeyCode::Enter;
-        case Qt::Key_Left:
-            return ToolKeyCode::Left;
-        case Qt::Key_Right:
-            return ToolKeyCode::Right;
-        case Qt::Key_Up:
-            return ToolKeyCode::Up;
-        case Qt::Key_Down:
-            return ToolKeyCode::Down;
-        default:
-            return ToolKeyCode::Other;
-    }
+ToolKeyCode codeOf(const QKeyEvent& event, const ActionTable& keys) {
+    if (event.key() == Qt::Key_Escape) return ToolKeyCode::Escape;
+    if (event.key() == Qt::Key_Return || event.key() == Qt::Key_Enter) return ToolKeyCode::Enter;
+    for (const auto& [id, code] :
+         {std::pair{ActionId::NudgeLeft, ToolKeyCode::Left},
+          std::pair{ActionId::NudgeRight, ToolKeyCode::Right}, std::pair{ActionId::NudgeUp, ToolKeyCode::Up},
+          std::pair{ActionId::NudgeDown, ToolKeyCode::Down}})
+        if (isKeyOf(event, *keys[id])) return code;
+    return ToolKeyCode::Other;
 }
 
 }  // namespace
@@ -53,7 +45,7 @@ bool CanvasWidget::event(QEvent* event) {
     if (event->type() != QEvent::NativeGesture) return QWidget::event(event);
     const auto* gesture = static_cast<QNativeGestureEvent*>(event);
     if (gesture->gestureType() != Qt::ZoomNativeGesture || !mSession) return QWidget::event(event);
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     view.zoomAt(gesture->position() * devicePixelRatioF(), 1 + gesture->value());
     zoomViewOn(view);
     return true;
@@ -62,7 +54,7 @@ bool CanvasWidget::event(QEvent* event) {
 void CanvasWidget::wheelEvent(QWheelEvent* event) {
     event->accept();
     if (!mSession) return;
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     const QPointF notches = QPointF(event->angleDelta()) / kNotch;
     if (event->modifiers() & Qt::ControlModifier) {
         view.zoomAt(event->position() * devicePixelRatioF(), std::pow(kZoomPerNotch, notches.y()));
@@ -81,19 +73,24 @@ void CanvasWidget::wheelEvent(QWheelEvent* event) {
 ToolEvent CanvasWidget::toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const {
     const QPointF image = toImage(position);
     return {.point = {image.x(), image.y()},
-            .pxPerScreenPx = devicePixelRatioF() / mView.scale(),
+            .pxPerScreenPx = devicePixelRatioF() / mLook.view.scale(),
             .modifiers = modifiersOf(modifiers),
             .onPhoto = seesPhoto(position * devicePixelRatioF())};
 }
 
 bool CanvasWidget::seesPhoto(QPointF devicePosition) const {
-    return showsPhoto() || (mSplit && hasOriginal() && devicePosition.x() < mSplitAt * deviceSize().width());
+    if (!hasOriginal()) return false;
+    // A document is shown as its photo until its first frame is there.
+    if (showsPhoto() || !showsAnyFrame()) return true;
+    const bool inLens =
+        mXRay && mCursor && QLineF(*mCursor, devicePosition).length() < kLensPx * devicePixelRatioF();
+    return inLens || (mSplit && devicePosition.x() < std::round(mSplitAt * deviceSize().width()));
 }
 
 ToolKey CanvasWidget::toolKey(const QKeyEvent& event) const {
-    return {.code = codeOf(event.key()),
+    return {.code = codeOf(event, *mKeys),
             .modifiers = modifiersOf(event.modifiers()),
-            .pxPerScreenPx = devicePixelRatioF() / mView.scale()};
+            .pxPerScreenPx = devicePixelRatioF() / mLook.view.scale()};
 }
 
 bool CanvasWidget::overSplitLine(QPointF devicePosition) const {
@@ -103,7 +100,7 @@ bool CanvasWidget::overSplitLine(QPointF devicePosition) const {
 }
 
 bool CanvasWidget::dragsView(const QMouseEvent& event) const {
-    return event.button() == Qt::MiddleButton || (event.button() == Qt::LeftButton && mSpace);
+    return event.button() == Qt::MiddleButton || (event.button() == Qt::LeftButton && mPanHeld);
 }
 
 void CanvasWidget::mousePressEvent(QMouseEvent* event) {
@@ -125,13 +122,13 @@ void CanvasWidget::mousePressEvent(QMouseEvent* event) {
 }
 
 void CanvasWidget::mouseDoubleClickEvent(QMouseEvent* event) {
-    if (event->button() != Qt::LeftButton || mSpace || !toolsInUse()) return mousePressEvent(event);
+    if (event->button() != Qt::LeftButton || mPanHeld || !toolsInUse()) return mousePressEvent(event);
     mPressed = true;
     mTools->doubleClick(toolEvent(event->position(), event->modifiers()));
 }
 
 void CanvasWidget::dragView(QPointF position) {
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     view.panBy(position - *mCursor);
     view.keepInView(pictureSize(), deviceSize());
     mCursor = position;
@@ -191,19 +188,15 @@ void CanvasWidget::hoverAgain(Qt::KeyboardModifiers modifiers) {
         mTools->move(toolEvent(*mCursor / devicePixelRatioF(), modifiers));
 }
 
-void CanvasWidget::setSpace(bool on) {
-    mSpace = on;
+void CanvasWidget::setPanHeld(bool on) {
+    mPanHeld = on;
     updateCursor();
 }
 
 void CanvasWidget::keyPressEvent(QKeyEvent* event) {
     // Its own event does not have it among its modifiers yet.
     if (event->key() == Qt::Key_Alt) hoverAgain(event->modifiers() | Qt::AltModifier);
-    if (event->key() == Qt::Key_O && event->modifiers() == Qt::NoModifier)
-        setPeeking(true);
-    else if (event->key() == Qt::Key_Space)
-        setSpace(true);
-    else if (mDrafting && event->key() == Qt::Key_Escape)
+    if (mDrafting && event->key() == Qt::Key_Escape)
         emit draftLeft();
     else if (!toolsInUse() || !mTools->keyPress(toolKey(*event)))
         QWidget::keyPressEvent(event);
@@ -213,19 +206,13 @@ void CanvasWidget::keyReleaseEvent(QKeyEvent* event) {
     // A held key repeats as pairs of press and release on X11.
     if (event->isAutoRepeat()) return;
     if (event->key() == Qt::Key_Alt) hoverAgain(event->modifiers() & ~Qt::AltModifier);
-    if (event->key() == Qt::Key_O)
-        setPeeking(false);
-    else if (event->key() == Qt::Key_Space)
-        setSpace(false);
-    else if (!toolsInUse() || !mTools->keyRelease(toolKey(*event)))
-        QWidget::keyReleaseEvent(event);
+    if (!toolsInUse() || !mTools->keyRelease(toolKey(*event))) QWidget::keyReleaseEvent(event);
 }
 
 void CanvasWidget::focusOutEvent(QFocusEvent*) {
     // The releases will go elsewhere.
-    mSpace = mPanning = mPressed = mDraggingSplit = false;
+    mPanning = mPressed = mDraggingSplit = false;
     if (mTools) mTools->cancel();
-    setPeeking(false);
     updateCursor();
     update();
 }

@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kCheckPx = 8;
 constexpr double kGridFromScale = 8;
-constexpr double kLensPx = 110;
 constexpr double kTagTextPx = 12;
 const LineStyle kSelection{QColor(64, 169, 255), QColor(255, 255, 255, 235), 1.6, 3.8};
 const LineStyle kCutOut{QColor(255, 255, 255), QColor(40, 44, 52), 1.2, 2.6, true};
@@ -66,11 +65,12 @@ void CanvasWidget::paintEvent(QPaintEvent*) {
     painter.scale(1 / ratio, 1 / ratio);
     paintGround(painter);
     if (!mSession) return;
-    painter.setClipRect(mView.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect());
+    painter.setClipRect(mLook.view.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect());
     mToScreen ? paintPictureManaged(painter) : paintPicture(painter);
     if (!mHeatMap.isNull() && !mDrafting)
-        drawClipped(painter, mHeatMap, mView.toScreen(QRectF(QPointF(0, 0), pictureSize())), deviceRect());
-    if (mView.scale() >= kGridFromScale * ratio) paintPixelGrid(painter);
+        drawClipped(painter, mHeatMap, mLook.view.toScreen(QRectF(QPointF(0, 0), pictureSize())),
+                    deviceRect());
+    if (mLook.view.scale() >= kGridFromScale * ratio) paintPixelGrid(painter);
     painter.setClipping(false);
     paintOverlays(painter);
 }
@@ -89,8 +89,7 @@ void CanvasWidget::paintPictureManaged(QPainter& painter) const {
 }
 
 void CanvasWidget::paintPicture(QPainter& painter) const {
-    // A document is shown as its photo until its first frame is there.
-    if (showsPhoto() || (!mFrames.overview() && hasOriginal())) return paintPhoto(painter);
+    if (showsPhoto() || (!showsAnyFrame() && hasOriginal())) return paintPhoto(painter);
     paintVector(painter);
     if (!hasOriginal()) return;
     if (mSplit) paintSplit(painter);
@@ -113,7 +112,7 @@ void CanvasWidget::paintSplit(QPainter& painter) const {
     painter.setBrush(Qt::white);
     painter.drawRoundedRect(QRectF(x - 3 * ratio, height / 2 - 18 * ratio, 6 * ratio, 36 * ratio), 3 * ratio,
                             3 * ratio);
-    const double gap = 8 * ratio, top = std::max(0., mView.toScreen(QPointF(0, 0)).y()) + gap;
+    const double gap = 8 * ratio, top = std::max(0., mLook.view.toScreen(QPointF(0, 0)).y()) + gap;
     drawTag(painter, QPointF(x - gap, top), tr("Photo"), true, ratio);
     drawTag(painter, QPointF(x + gap, top), tr("Vector image"), false, ratio);
     painter.restore();
@@ -140,13 +139,13 @@ void CanvasWidget::paintLens(QPainter& painter) const {
 void CanvasWidget::paintPixelGrid(QPainter& painter) const {
     const QRectF part = visiblePart();
     std::vector<QLineF> lines;
-    const QRectF area = mView.toScreen(part);
+    const QRectF area = mLook.view.toScreen(part);
     for (double x = std::ceil(part.left()); x <= part.right(); ++x) {
-        const double at = std::round(mView.toScreen(QPointF(x, 0)).x()) + .5;
+        const double at = std::round(mLook.view.toScreen(QPointF(x, 0)).x()) + .5;
         lines.emplace_back(at, area.top(), at, area.bottom());
     }
     for (double y = std::ceil(part.top()); y <= part.bottom(); ++y) {
-        const double at = std::round(mView.toScreen(QPointF(0, y)).y()) + .5;
+        const double at = std::round(mLook.view.toScreen(QPointF(0, y)).y()) + .5;
         lines.emplace_back(area.left(), at, area.right(), at);
     }
     painter.setPen(QColor(128, 128, 128, 70));
@@ -156,21 +155,21 @@ void CanvasWidget::paintPixelGrid(QPainter& painter) const {
 void CanvasWidget::paintOverlays(QPainter& painter) const {
     if (mMesh.patchCount() == 0) return;
     const double ratio = devicePixelRatioF();
-    mOverlay.paint(painter, mView, deviceRect(), ratio, mOverlays);
-    if (mOverlays.centres) paintCentres(painter, mMesh, mView, deviceRect(), ratio);
+    mOverlay.paint(painter, mLook.view, deviceRect(), ratio, mOverlays);
+    if (mOverlays.centres) paintCentres(painter, mMesh, mLook.view, deviceRect(), ratio);
     // Tells what is cut out from what is hidden, where nothing is drawn either.
-    mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mCutOutOutline, kCutOut);
-    mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mHighlightOutline, kHighlight);
-    mOverlay.paintOutline(painter, mView, deviceRect(), ratio, mSelectionOutline, kSelection);
+    mOverlay.paintOutline(painter, mLook.view, deviceRect(), ratio, mCutOutOutline, kCutOut);
+    mOverlay.paintOutline(painter, mLook.view, deviceRect(), ratio, mHighlightOutline, kHighlight);
+    mOverlay.paintOutline(painter, mLook.view, deviceRect(), ratio, mSelectionOutline, kSelection);
     if (toolsInUse())
-        paintToolOverlay(painter, mTools->overlay(), mOverlay, mMesh, mView, deviceRect(), ratio);
+        paintToolOverlay(painter, mTools->overlay(), mOverlay, mMesh, mLook.view, deviceRect(), ratio);
 }
 
 void CanvasWidget::paintGround(QPainter& painter) {
     painter.fillRect(deviceRect(), mColours.ground);
     if (!mSession) return;
     const double ratio = devicePixelRatioF();
-    const QRectF area = mView.toScreen(QRectF(QPointF(0, 0), pictureSize()));
+    const QRectF area = mLook.view.toScreen(QRectF(QPointF(0, 0), pictureSize()));
     const QRectF shown = area & deviceRect();
     painter.fillRect(area.adjusted(-ratio, -ratio, ratio, ratio) & deviceRect().adjusted(-2, -2, 2, 2),
                      mColours.frame);
@@ -188,16 +187,16 @@ void CanvasWidget::paintGround(QPainter& painter) {
 }
 
 void CanvasWidget::paintPhoto(QPainter& painter) const {
-    const QImage& level = mSession->photo().pyramid->levelFor(mView.scale());
+    const QImage& level = mSession->photo().pyramid->levelFor(mLook.view.scale());
     // Zoomed in, pixels stay what they are: square.
-    painter.setRenderHint(QPainter::SmoothPixmapTransform, mView.scale() < 1);
-    drawClipped(painter, level, mView.toScreen(QRectF(QPointF(0, 0), pictureSize())), deviceRect());
+    painter.setRenderHint(QPainter::SmoothPixmapTransform, mLook.view.scale() < 1);
+    drawClipped(painter, level, mLook.view.toScreen(QRectF(QPointF(0, 0), pictureSize())), deviceRect());
 }
 
 void CanvasWidget::paintVector(QPainter& painter) const {
     const auto& latest = mFrames.latest();
-    const QRectF inner = latest ? shownArea(mView, *latest) : QRectF();
-    const QRectF picture = mView.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect();
+    const QRectF inner = latest ? shownArea(mLook.view, *latest) : QRectF();
+    const QRectF picture = mLook.view.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect();
     // Beside, not below: where the picture is transparent, two layers would add up.
     if (mFrames.overview() && !inner.contains(picture)) {
         painter.save();
@@ -212,8 +211,8 @@ void CanvasWidget::paintVector(QPainter& painter) const {
 }
 
 void CanvasWidget::paintFrame(QPainter& painter, const Frame& frame) const {
-    const QRectF area = shownArea(mView, frame);
-    if (frame.view.scale.x == mView.scale()) {
+    const QRectF area = shownArea(mLook.view, frame);
+    if (frame.view.scale.x == mLook.view.scale()) {
         // Drawn for this zoom: pixel on pixel, moved by whole ones where the view has been panned since.
         painter.drawImage(QPointF(std::round(area.left()), std::round(area.top())), frame.image);
         return;
@@ -222,11 +221,10 @@ void CanvasWidget::paintFrame(QPainter& painter, const Frame& frame) const {
     drawClipped(painter, frame.image, area, deviceRect());
 }
 
-QColor CanvasWidget::shownColour(QPointF image) const {
-    if (showsPhoto() || !mFrames.overview()) {
-        if (!mSession->photo().pyramid) return {};
+QColor CanvasWidget::shownColour(QPointF devicePosition) const {
+    const QPointF image = mLook.view.toImage(devicePosition);
+    if (seesPhoto(devicePosition))
         return mSession->photo().pyramid->full().pixelColor(int(image.x()), int(image.y()));
-    }
     for (const auto* frame : {&mFrames.latest(), &mFrames.overview()}) {
         if (!*frame) continue;
         const View& view = (*frame)->view;

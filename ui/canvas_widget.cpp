@@ -64,21 +64,40 @@ CanvasWidget::CanvasWidget(QWidget* parent) : QWidget(parent), mColours(canvasCo
     connect(&mFrames, &FrameSource::frameReady, this, [this] {
         update();
         reportCursor();
-        emit overviewChanged();
     });
+    connect(&mFrames, &FrameSource::overviewReady, this, &CanvasWidget::overviewChanged);
 }
 
 void CanvasWidget::setSession(DocumentSession* session) {
     if (mSession) {
         mSession->disconnect(this);
         mSession->selection().disconnect(this);
+        storeLook();
     }
     mSession = session;
-    mPeeking = false;
     if (mSession) connect(mSession, &DocumentSession::changed, this, &CanvasWidget::follow);
     if (mSession) connect(&mSession->selection(), &Selection::changed, this, &CanvasWidget::outlineSelection);
     reloadMesh();
-    fit();
+    recallLook();
+}
+
+void CanvasWidget::storeLook() {
+    std::erase_if(mOtherLooks,
+                  [&](const Looks& looks) { return !looks.session || looks.session == mSession; });
+    mOtherLooks.push_back({mSession, mLook, mLookBefore, mLaidOut});
+}
+
+void CanvasWidget::recallLook() {
+    mSinceZoom.invalidate();
+    for (const Looks& looks : mOtherLooks)
+        if (mSession && looks.session == mSession) {
+            mLook = looks.now;
+            mLookBefore = looks.before;
+            mLaidOut = looks.laidOut;
+            return layOut();
+        }
+    look(fittedLook());
+    mLookBefore = mLook;
 }
 
 void CanvasWidget::reloadMesh() {
@@ -90,6 +109,7 @@ void CanvasWidget::reloadMesh() {
     requestFrame();
     update();
     reportCursor();
+    emit overviewChanged();
 }
 
 void CanvasWidget::setDraft(const std::optional<PatchMesh>& draft) {
@@ -181,8 +201,9 @@ QImage CanvasWidget::overviewImage() const {
     return hasOriginal() ? mSession->photo().pyramid->levelFor(.1) : QImage();
 }
 
-void CanvasWidget::setTools(ToolManager* tools) {
+void CanvasWidget::setTools(ToolManager* tools, const ActionTable& keys) {
     mTools = tools;
+    mKeys = &keys;
     connect(mTools, &ToolManager::overlayChanged, this, [this] {
         updateCursor();
         update();
@@ -224,7 +245,7 @@ void CanvasWidget::setSplit(bool on) {
 
 void CanvasWidget::setXRay(bool on) {
     mXRay = on;
-    update();
+    lookAgain();
 }
 
 void CanvasWidget::setOverlays(const OverlayOptions& options) {
@@ -234,21 +255,31 @@ void CanvasWidget::setOverlays(const OverlayOptions& options) {
 }
 
 void CanvasWidget::zoomStep(bool larger) {
-    zoomTo(ViewTransform::nextScale(mView.scale(), larger));
+    zoomTo(ViewTransform::nextScale(mLook.view.scale(), larger));
 }
 
 void CanvasWidget::zoomTo(double scale) {
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     view.setScaleAt(deviceRect().center(), scale);
     zoomView(view);
 }
 
-void CanvasWidget::fit() {
-    ViewTransform view = mView;
+void CanvasWidget::zoomOnTo(double scale) {
+    ViewTransform view = mLook.view;
+    view.setScaleAt(deviceRect().center(), scale);
+    zoomViewOn(view);
+}
+
+CanvasWidget::Look CanvasWidget::fittedLook() const {
+    ViewTransform fitted = mLook.view;
     const double ratio = devicePixelRatioF();
-    view.fit(pictureSize(), deviceSize(), kFitMarginPx * ratio, ratio);
-    zoomView(view);
-    mFitted = true;
+    fitted.fit(pictureSize(), deviceSize(), kFitMarginPx * ratio, ratio);
+    return {fitted, true};
+}
+
+void CanvasWidget::fit() {
+    rememberLook();
+    look(fittedLook());
 }
 
 void CanvasWidget::showRect(const QRectF& image) {
@@ -256,59 +287,67 @@ void CanvasWidget::showRect(const QRectF& image) {
     const double margin = kFitMarginPx * devicePixelRatioF();
     const double scale = std::min((deviceSize().width() - 2 * margin) / image.width(),
                                   (deviceSize().height() - 2 * margin) / image.height());
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     view.setScaleAt(deviceRect().center(), scale);
     view.panBy(deviceRect().center() - view.toScreen(image.center()));
     zoomView(view);
 }
 
 void CanvasWidget::centreOn(QPointF image) {
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     view.panBy(deviceRect().center() - view.toScreen(image));
     view.keepInView(pictureSize(), deviceSize());
     changeView(view);
 }
 
 void CanvasWidget::previousZoom() {
-    zoomView(ViewTransform(mViewBefore));
+    Look before = mLookBefore.fitted ? fittedLook() : mLookBefore;
+    before.view.keepInView(pictureSize(), deviceSize());
+    rememberLook();
+    look(before);
 }
 
 QRectF CanvasWidget::visiblePart() const {
-    return QRectF(mView.toImage(deviceRect().topLeft()), mView.toImage(deviceRect().bottomRight())) &
+    return QRectF(mLook.view.toImage(deviceRect().topLeft()),
+                  mLook.view.toImage(deviceRect().bottomRight())) &
            QRectF(QPointF(0, 0), pictureSize());
 }
 
 void CanvasWidget::changeViewAsAsked(const ViewRequest& request) {
     if (const auto* pan = std::get_if<PanBy>(&request)) {
-        ViewTransform view = mView;
-        view.panBy(toPoint(pan->offset) * mView.scale());
+        ViewTransform view = mLook.view;
+        view.panBy(toPoint(pan->offset) * mLook.view.scale());
         view.keepInView(pictureSize(), deviceSize());
         changeView(view);
     } else if (const auto* step = std::get_if<ZoomStep>(&request)) {
-        ViewTransform view = mView;
-        view.setScaleAt(mView.toScreen(toPoint(step->at)), ViewTransform::nextScale(mView.scale(), step->in));
+        ViewTransform view = mLook.view;
+        view.setScaleAt(mLook.view.toScreen(toPoint(step->at)),
+                        ViewTransform::nextScale(mLook.view.scale(), step->in));
         zoomView(view);
     } else {
         showRect(toRect(std::get<ShowRect>(request).rect));
     }
 }
 
-void CanvasWidget::zoomView(const ViewTransform& view) {
-    mViewBefore = mView;
+void CanvasWidget::rememberLook() {
+    mLookBefore = mLook;
     mSinceZoom.invalidate();
+}
+
+void CanvasWidget::zoomView(const ViewTransform& view) {
+    rememberLook();
     changeView(view);
 }
 
 void CanvasWidget::zoomViewOn(const ViewTransform& view) {
-    if (!mSinceZoom.isValid() || mSinceZoom.elapsed() > kOneZoomMs) mViewBefore = mView;
+    if (!mSinceZoom.isValid() || mSinceZoom.elapsed() > kOneZoomMs) mLookBefore = mLook;
     mSinceZoom.start();
     changeView(view);
 }
 
-void CanvasWidget::changeView(const ViewTransform& view) {
-    mFitted = false;
+void CanvasWidget::look(const Look& look) {
+    mLook = look;
     mLaidOut = deviceSize();
-    mView = view;
     requestFrame();
     update();
     reportCursor();
@@ -319,31 +358,35 @@ void CanvasWidget::requestFrame() {
     if (!mSession || mMesh.patchCount() == 0) return;
     // Only pixels that lie wholly within the picture: what is outside is black or clear, and would darken the
     // border.
-    const QRectF part = mView.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect();
+    const QRectF part = mLook.view.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect();
     const double left = std::ceil(part.left()), top = std::ceil(part.top());
-    const QPointF origin = mView.toImage({left, top});
+    const QPointF origin = mLook.view.toImage({left, top});
     View view;
     view.origin = {origin.x(), origin.y()};
-    view.scale = {mView.scale(), mView.scale()};
+    view.scale = {mLook.view.scale(), mLook.view.scale()};
     view.width = int(std::floor(part.right()) - left);
     view.height = int(std::floor(part.bottom()) - top);
     if (view.width > 0 && view.height > 0) mFrames.request(view);
 }
 
-void CanvasWidget::resizeEvent(QResizeEvent*) {
-    if (mFitted || mLaidOut.isEmpty()) return fit();
+void CanvasWidget::layOut() {
+    if (mLook.fitted || mLaidOut.isEmpty()) return look(fittedLook());
     // What was in the middle stays there.
-    ViewTransform view = mView;
+    ViewTransform view = mLook.view;
     const QSizeF grown = deviceSize() - mLaidOut;
     view.panBy(QPointF(grown.width(), grown.height()) / 2);
     view.keepInView(pictureSize(), deviceSize());
     changeView(view);
 }
 
+void CanvasWidget::resizeEvent(QResizeEvent*) {
+    layOut();
+}
+
 void CanvasWidget::updateCursor() {
     if (mPanning)
         setCursor(Qt::ClosedHandCursor);
-    else if (mSpace)
+    else if (mPanHeld)
         setCursor(Qt::OpenHandCursor);
     else if (mDraggingSplit || (mCursor && overSplitLine(*mCursor)))
         setCursor(Qt::SplitHCursor);
@@ -354,13 +397,13 @@ void CanvasWidget::updateCursor() {
 void CanvasWidget::reportCursor() {
     std::optional<QPointF> image;
     if (mCursor && mSession) {
-        const QPointF point = mView.toImage(*mCursor);
+        const QPointF point = mLook.view.toImage(*mCursor);
         // A point on the right or lower border is in no pixel.
         const QSizeF size = pictureSize();
         if (point.x() >= 0 && point.y() >= 0 && point.x() < size.width() && point.y() < size.height())
             image = point;
     }
-    emit cursorMoved(image, image ? shownColour(*image) : QColor());
+    emit cursorMoved(image, image ? shownColour(*mCursor) : QColor());
 }
 
 }  // namespace tessera

@@ -5,6 +5,7 @@
 #include <QColorSpace>
 #include <QColorTransform>
 #include <QElapsedTimer>
+#include <QPointer>
 #include <QWidget>
 #include <optional>
 
@@ -18,6 +19,8 @@
 
 namespace tessera {
 
+class ActionTable;
+
 // Draws the vector image with the CPU renderer where there is one, else the photo. Positions in its interface
 // are logical widget coordinates, as Qt's events have them; the view inside is in device pixels.
 class CanvasWidget : public QWidget {
@@ -26,8 +29,8 @@ class CanvasWidget : public QWidget {
   public:
     explicit CanvasWidget(QWidget* parent = nullptr);
 
-    // Shows another document from its whole picture on; null shows none. The session outlives this or the
-    // next call.
+    // Shows another document as it was last seen, at first its whole picture; null shows none. The session
+    // outlives this or the next call.
     void setSession(DocumentSession* session);
     void setTheme(Theme theme);
     // That of the window's surface, into which pictures are converted; pictures are shown as they are, in
@@ -35,28 +38,34 @@ class CanvasWidget : public QWidget {
     void setScreenColours(const QColorSpace& space);
     // Null: the CPU renderer.
     void setDrawer(std::unique_ptr<FrameDrawer> drawer) { mFrames.setDrawer(std::move(drawer)); }
-    // Whose tools get what pointer and keys do here; outlives the canvas.
-    void setTools(ToolManager* tools);
+    // Whose tools get what pointer and keys do here, and which keys nudge; both outlive the canvas.
+    void setTools(ToolManager* tools, const ActionTable& keys);
 
-    const ViewTransform& view() const { return mView; }
-    QPointF toImage(QPointF position) const { return mView.toImage(position * devicePixelRatioF()); }
-    QPointF toWidget(QPointF image) const { return mView.toScreen(image) / devicePixelRatioF(); }
+    const ViewTransform& view() const { return mLook.view; }
+    QPointF toImage(QPointF position) const { return mLook.view.toImage(position * devicePixelRatioF()); }
+    QPointF toWidget(QPointF image) const { return mLook.view.toScreen(image) / devicePixelRatioF(); }
 
     // Zooms by steps about the middle of the canvas.
     void zoomStep(bool larger);
     void zoomTo(double scale);
+    // The same as a part of what a slider does: to previousZoom() its steps are one change.
+    void zoomOnTo(double scale);
     void fit();
     // Makes a part of the picture (image px) fill the canvas.
     void showRect(const QRectF& image);
-    // Back to the zoom before the last change of it; a second time, forth again.
+    // Back to the zoom before the last change of it by the user; a second time, forth again.
     void previousZoom();
     void centreOn(QPointF image);
     // The part of the picture that is in view, in image px.
     QRectF visiblePart() const;
 
     void setOverlays(const OverlayOptions& options);
-    // Shows the photo instead of the vector image for as long as it is on. Holding O does the same.
+    // Shows the photo instead of the vector image for as long as one of the two is on: one is an option, the
+    // other a key that is held.
     void setShowOriginal(bool on);
+    void setPeeking(bool on);
+    // While the key is held, any tool drags the view.
+    void setPanHeld(bool on);
     // The photo left of a line that can be dragged, the vector image right of it.
     void setSplit(bool on);
     // The photo in a lens at the pointer.
@@ -105,9 +114,23 @@ class CanvasWidget : public QWidget {
     void focusOutEvent(QFocusEvent* event) override;
 
   private:
+    static constexpr double kLensPx = 110;  // the radius of the X-ray's lens
+
     QSizeF deviceSize() const { return QSizeF(size()) * devicePixelRatioF(); }
     QRectF deviceRect() const { return QRectF(QPointF(0, 0), deviceSize()); }
     QSizeF pictureSize() const;
+
+    // A view of a document.
+    struct Look {
+        ViewTransform view;
+        bool fitted = true;  // it follows the window until the user zooms or pans
+    };
+    // All that is remembered of a document that is not shown.
+    struct Looks {
+        QPointer<DocumentSession> session;
+        Look now, before;
+        QSizeF laidOut;
+    };
 
     void reloadMesh();
     void showMesh(const PatchMesh& mesh);
@@ -121,24 +144,34 @@ class CanvasWidget : public QWidget {
     ToolEvent toolEvent(QPointF position, Qt::KeyboardModifiers modifiers) const;
     ToolKey toolKey(const QKeyEvent& event) const;
     void changeViewAsAsked(const ViewRequest& request);
-    // Whether the photo is what is seen there, for a held O or left of the split view's line.
+    // The one answer to whether the photo is what is seen there: in the whole canvas, left of the split
+    // view's line, or in the lens.
     bool seesPhoto(QPointF devicePosition) const;
+    bool showsAnyFrame() const { return mFrames.latest() || mFrames.overview(); }
     bool overSplitLine(QPointF devicePosition) const;
-    void setPeeking(bool on);
     // Something else is seen at the pointer, which has not moved.
     void lookAgain();
     void hoverAgain(Qt::KeyboardModifiers modifiers);
-    void setSpace(bool on);
     bool dragsView(const QMouseEvent& event) const;
     void dragView(QPointF position);
+    void rememberLook();
     // Zooms at once, or goes on with what a wheel has begun: the view before is that before all of it.
     void zoomView(const ViewTransform& view);
     void zoomViewOn(const ViewTransform& view);
-    void changeView(const ViewTransform& view);
+    // By hand.
+    void changeView(const ViewTransform& view) { look({view, false}); }
+    void look(const Look& look);
+    Look fittedLook() const;
+    // Keeps the look of the session that is shown, and takes up that of another one.
+    void storeLook();
+    void recallLook();
+    // The look in a canvas of another size.
+    void layOut();
     void requestFrame();
     void updateCursor();
     void reportCursor();
-    QColor shownColour(QPointF image) const;
+    // At a point within the picture.
+    QColor shownColour(QPointF devicePosition) const;
 
     void paintGround(QPainter& painter);
     // In the colours of the screen.
@@ -154,6 +187,7 @@ class CanvasWidget : public QWidget {
 
     DocumentSession* mSession = nullptr;
     ToolManager* mTools = nullptr;
+    const ActionTable* mKeys = nullptr;
     PatchMesh mMesh;  // as the frames and overlays show it
     FrameSource mFrames;
     OverlayPainter mOverlay;
@@ -165,15 +199,15 @@ class CanvasWidget : public QWidget {
     std::vector<EdgeId> mSelectionOutline;
     std::vector<EdgeId> mHighlightOutline;
     QImage mHeatMap;
-    ViewTransform mView;
-    ViewTransform mViewBefore;  // the zoom that previousZoom() goes to
-    QElapsedTimer mSinceZoom;   // steps of a wheel in quick succession are one change of the zoom
-    QSizeF mLaidOut;            // device size for which mView was made
-    bool mFitted = true;        // the view follows the window until the user zooms or pans
-    bool mDrafting = false;     // mMesh is a draft
+    Look mLook;
+    Look mLookBefore;  // the zoom that previousZoom() goes to
+    QSizeF mLaidOut;   // device size for which mLook was made
+    std::vector<Looks> mOtherLooks;
+    QElapsedTimer mSinceZoom;  // steps of a wheel in quick succession are one change of the zoom
+    bool mDrafting = false;    // mMesh is a draft
     bool mShowOriginal = false;
-    bool mPeeking = false;  // O is held
-    bool mSpace = false;    // Space is held
+    bool mPeeking = false;
+    bool mPanHeld = false;
     bool mPanning = false;
     bool mPressed = false;  // a tool has been sent a press
     bool mXRay = false;

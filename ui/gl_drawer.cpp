@@ -4,10 +4,12 @@
 #include <QObject>
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
+#include <algorithm>
 #include <optional>
+#include <span>
 
 #include "app/patch_marks.h"
-#include "app/picture_pyramid.h"
+#include "core/base/parallel.h"
 #include "render/gl_objects.h"
 #include "render/offscreen_gl.h"
 #include "render/renderer.h"
@@ -21,6 +23,8 @@ QSurfaceFormat core45() {
     format.setRenderableType(QSurfaceFormat::OpenGL);
     format.setProfile(QSurfaceFormat::CoreProfile);
     format.setVersion(4, 5);
+    // So that a reset of the card is told of, where the driver can.
+    format.setOption(QSurfaceFormat::ResetNotification);
     return format;
 }
 
@@ -48,6 +52,7 @@ class GlDrawer : public FrameDrawer {
             return nullptr;
         }
         drawer->mRenderer.emplace(std::move(*renderer));
+        (void)render::checkDrawn();  // whatever there was before the first frame is not its error
         return drawer;
     }
 
@@ -74,19 +79,38 @@ class GlDrawer : public FrameDrawer {
 
     Result<QImage> draw(const View& view) override {
         if (!makeCurrent()) return failure(ErrorCode::Internal, "the OpenGL context was lost");
-        if (!mTarget || mSize != QSize(view.width, view.height)) {
-            mSize = QSize(view.width, view.height);
-            mTarget.emplace(view.width, view.height);
-        }
+        if (!mTarget)
+            mTarget.emplace(view.width, view.height, GL_RGBA8);
+        else
+            mTarget->resize(view.width, view.height);
         mTarget->bind();
         if (const auto drawn = mRenderer->draw(view, {.showHidden = false}); !drawn)
             return tl::unexpected<Error>(drawn.error());
-        const bool transparent = mChannels == 4 || mMarks.leavesHoles();
-        return toQImage(mTarget->read(transparent ? 4 : 3));
+        QImage image = read(mChannels == 4 || mMarks.leavesHoles());
+        if (const auto drawn = render::checkDrawn(); !drawn) return tl::unexpected<Error>(drawn.error());
+        return image;
     }
 
   private:
     GlDrawer() = default;
+
+    // As toQImage() makes one of the CPU's frames.
+    QImage read(bool transparent) const {
+        const int width = mTarget->width(), height = mTarget->height();
+        QImage image(width, height, transparent ? QImage::Format_ARGB32_Premultiplied : QImage::Format_RGB32);
+        const std::span pixels(reinterpret_cast<QRgb*>(image.bits()), size_t(width) * size_t(height));
+        mTarget->readArgb(pixels);
+        parallelFor(pixels.size(), size_t(64) * size_t(width), [&](size_t begin, size_t end) {
+            for (QRgb& pixel : pixels.subspan(begin, end - begin)) {
+                const int alpha = qAlpha(pixel);
+                // Premultiplied values above alpha are what Qt's blending must never see.
+                pixel = transparent ? qRgba(std::min(qRed(pixel), alpha), std::min(qGreen(pixel), alpha),
+                                            std::min(qBlue(pixel), alpha), alpha)
+                                    : pixel | qRgb(0, 0, 0);
+            }
+        });
+        return image;
+    }
 
     bool makeCurrent() { return mContext.isValid() && mContext.makeCurrent(&mSurface); }
 
@@ -94,7 +118,6 @@ class GlDrawer : public FrameDrawer {
     QOpenGLContext mContext;
     std::optional<render::Renderer> mRenderer;
     std::optional<render::OffscreenTarget> mTarget;
-    QSize mSize;
     render::GlDevice mDevice;
     PatchMarks mMarks;
     int mChannels = 3;

@@ -10,7 +10,9 @@
 #include <QWindow>
 #include <utility>
 
+#include "app/selection_actions.h"
 #include "ui/action_table.h"
+#include "ui/canvas_keys.h"
 #include "ui/canvas_widget.h"
 #include "ui/conversions.h"
 #include "ui/dialogs/cheat_sheet.h"
@@ -132,7 +134,10 @@ void MainWindow::connectViewActions() {
             widget->setVisible(shown);
     });
     onToggled(ActionId::HidePanels, [this](bool hidden) { setPanelsHidden(hidden); });
-    onToggled(ActionId::FullScreen, [this](bool full) { full ? showFullScreen() : showNormal(); });
+    onToggled(ActionId::FullScreen, [this](bool full) {
+        // Alone: a maximized window is maximized again afterwards.
+        setWindowState(windowState().setFlag(Qt::WindowFullScreen, full));
+    });
     // Tab moves the focus within the panel; on the canvas, where there is nothing to move to, it hides the
     // panels.
     QAction* hide = a[ActionId::HidePanels];
@@ -174,7 +179,12 @@ void MainWindow::connectWorkspace() {
 }
 
 void MainWindow::connectCanvas() {
-    mCanvas->setTools(&mTools);
+    mCanvas->setTools(&mTools, *mActions);
+    auto* keys = new CanvasKeys(*this, *mCanvas, *mActions);
+    keys->setParent(this);
+    connect(keys, &CanvasKeys::heldChanged, mCanvas, [this](ActionId id, bool down) {
+        id == ActionId::Pan ? mCanvas->setPanHeld(down) : mCanvas->setPeeking(down);
+    });
     connect(mCanvas, &CanvasWidget::viewChanged, this, &MainWindow::showView);
     connect(mCanvas, &CanvasWidget::cursorMoved, mStatus, &StatusBar::showCursor);
     connect(mCanvas, &CanvasWidget::cursorMoved, this, [this](std::optional<QPointF> image) {
@@ -203,7 +213,6 @@ void MainWindow::chooseRenderer() {
 }
 
 void MainWindow::connectPanels() {
-    connect(mPanel, &VectorizePanel::editingDone, this, [this] { mCanvas->setFocus(); });
     connect(mPanel, &VectorizePanel::draftWanted, this,
             [this] { mDrafts.want(mPanel->settings(mWorkspace.session())); });
     connect(mPanel, &VectorizePanel::draftDropped, &mDrafts, &DraftPreview::drop);
@@ -213,12 +222,13 @@ void MainWindow::connectPanels() {
     mRecolour->setToolOptions(mTools);
     mPalette->setToolOptions(mTools);
     mSelection->setToolOptions(mTools);
+    mSelection->showTipsOf(*mActions);
     connect(mRecolour, &RecolourPanel::said, this, &MainWindow::say);
     connect(mPalette, &PalettePanel::said, this, &MainWindow::say);
     connect(mSelection, &SelectionPanel::said, this, &MainWindow::say);
     connect(mPalette, &PalettePanel::highlighted, mCanvas, &CanvasWidget::setHighlight);
     connect(mNavigator, &Navigator::moveRequested, mCanvas, &CanvasWidget::centreOn);
-    connect(mNavigator, &Navigator::zoomRequested, mCanvas, &CanvasWidget::zoomTo);
+    connect(mNavigator, &Navigator::zoomRequested, mCanvas, &CanvasWidget::zoomOnTo);
     connect(mRecent, &QMenu::aboutToShow, this, &MainWindow::fillRecentMenu);
     mStart->setRecentFiles(mSettings.recentFiles());
     connect(mStart, &StartPage::openRequested, this, &MainWindow::open);
@@ -411,11 +421,7 @@ void MainWindow::fitSelection() {
     const DocumentSession& session = *mWorkspace.session();
     const PatchMesh& mesh = session.document().mesh;
     QRectF area;
-    const auto include = [&](const Rect& box) { area |= toRect(box); };
-    for (const PatchId p : session.selection().patches()) include(controlBounds(mesh, p));
-    for (const EdgeId e : session.selection().curves())
-        for (const HalfedgeId h : {HalfedgeMesh::halfedge(e), HalfedgeMesh::twin(HalfedgeMesh::halfedge(e))})
-            if (const PatchId p = mesh.connectivity().face(h); p.valid()) include(controlBounds(mesh, p));
+    for (const PatchId p : selectionsPatches(session)) area |= toRect(controlBounds(mesh, p));
     mCanvas->showRect(area);
 }
 
@@ -459,6 +465,8 @@ void MainWindow::applyBehaviour() {
 
 void MainWindow::changeEvent(QEvent* event) {
     if (event->type() == QEvent::PaletteChange && mActions) mActions->tintIcons(palette());
+    if (event->type() == QEvent::WindowStateChange && mActions)
+        (*mActions)[ActionId::FullScreen]->setChecked(isFullScreen());
     if (event->type() == QEvent::ActivationChange && !isActiveWindow()) mTools.cancel();
     QMainWindow::changeEvent(event);
 }

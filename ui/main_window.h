@@ -76,7 +76,8 @@ class MainWindow : public QMainWindow {
     void buildLayout();
     QWidget* makeCentre();
     void makeDocks();
-    QDockWidget* addDock(const QString& name, const QString& title, QWidget* content, bool scrolls);
+    // A panel that `shown` opens and closes, and that has its name.
+    QDockWidget* addDock(const QString& name, QAction* shown, QWidget* content, bool scrolls);
     void restoreWindow();
     void storeWindow();
     void setPanelsHidden(bool hidden);

@@ -12,6 +12,7 @@
 
 #include "app/file_service.h"
 #include "app/selection_picture.h"
+#include "ui/canvas_widget.h"
 #include "ui/dialogs/export_dialog.h"
 #include "ui/main_window.h"
 #include "ui/message_bar.h"
@@ -140,6 +141,8 @@ CloseAnswer MainWindow::askToClose(DocumentSession& session) {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+    // What a field or a slider waits with is a change too.
+    mCanvas->setFocus();
     if (mClosing || mWorkspace.sessions().isEmpty()) {
         storeWindow();
         return event->accept();

@@ -32,7 +32,7 @@ constexpr QSize kFirstSize(1440, 900);
 // What the panels need at least.
 constexpr int kPanelWidthPx = 290;
 // Of what saveState() keeps: another number where docks have come or gone.
-constexpr int kStateVersion = 2;
+constexpr int kStateVersion = 3;
 
 const std::array kRememberedToggles{
     ActionId::ShowFeatures, ActionId::ShowEdges,      ActionId::ShowControlPoints,
@@ -44,7 +44,7 @@ const std::array kRememberedToggles{
 void MainWindow::buildLayout() {
     setCentralWidget(makeCentre());
     addToolBar(Qt::LeftToolBarArea, mToolBar = new ToolBar(*mActions, mTools));
-    addToolBar(Qt::TopToolBarArea, mToolOptions = new ToolOptionsBar(mTools));
+    addToolBar(Qt::TopToolBarArea, mToolOptions = new ToolOptionsBar(*mActions, mTools));
     setTabPosition(Qt::RightDockWidgetArea, QTabWidget::North);
     makeDocks();
     setStatusBar(mStatus = new StatusBar);
@@ -82,13 +82,20 @@ QWidget* MainWindow::makeCentre() {
 
 void MainWindow::makeDocks() {
     mPanel = new VectorizePanel(mSettings, *mActions);
-    QDockWidget* vectorize = addDock("vectorizeDock", tr("Vectorize"), mPanel, true);
-    QDockWidget* recolour = addDock("recolourDock", tr("Recolour"), mRecolour = new RecolourPanel, true);
-    QDockWidget* palette =
-        addDock("paletteDock", tr("Palette"), mPalette = new PalettePanel(mSwatches), true);
-    QDockWidget* selection = addDock("selectionDock", tr("Selection"), mSelection = new SelectionPanel, true);
-    QDockWidget* history = addDock("historyDock", tr("History"), mHistory = new HistoryPanel, false);
-    QDockWidget* navigator = addDock("navigatorDock", tr("Navigator"), mNavigator = new Navigator, false);
+    mRecolour = new RecolourPanel;
+    mPalette = new PalettePanel(mSwatches);
+    mSelection = new SelectionPanel;
+    mHistory = new HistoryPanel;
+    mNavigator = new Navigator;
+    const auto add = [this](const QString& name, ActionId shown, QWidget* content, bool scrolls) {
+        return addDock(name, (*mActions)[shown], content, scrolls);
+    };
+    QDockWidget* vectorize = add("vectorizeDock", ActionId::ShowVectorizePanel, mPanel, true);
+    QDockWidget* recolour = add("recolourDock", ActionId::ShowRecolourPanel, mRecolour, true);
+    QDockWidget* palette = add("paletteDock", ActionId::ShowPalettePanel, mPalette, true);
+    QDockWidget* selection = add("selectionDock", ActionId::ShowSelectionPanel, mSelection, true);
+    QDockWidget* history = add("historyDock", ActionId::ShowHistoryPanel, mHistory, false);
+    QDockWidget* navigator = add("navigatorDock", ActionId::ShowNavigatorPanel, mNavigator, false);
     tabifyDockWidget(vectorize, recolour);
     tabifyDockWidget(recolour, palette);
     tabifyDockWidget(selection, history);
@@ -98,13 +105,16 @@ void MainWindow::makeDocks() {
     resizeDocks({vectorize, navigator}, {3, 1}, Qt::Vertical);
 }
 
-QDockWidget* MainWindow::addDock(const QString& name, const QString& title, QWidget* content, bool scrolls) {
-    auto* dock = new QDockWidget(title);
+QDockWidget* MainWindow::addDock(const QString& name, QAction* shown, QWidget* content, bool scrolls) {
+    auto* dock = new QDockWidget(shown->text().remove('&'));
     dock->setObjectName(name);
     dock->setAllowedAreas(Qt::LeftDockWidgetArea | Qt::RightDockWidgetArea);
-    dock->setFeatures(QDockWidget::DockWidgetMovable);
-    // The tab says the name.
-    dock->setTitleBarWidget(new QWidget);
+    // Whether it is open, be it behind another one's tab or not.
+    connect(dock->toggleViewAction(), &QAction::toggled, shown, &QAction::setChecked);
+    connect(shown, &QAction::triggered, dock, [dock](bool show) {
+        dock->setVisible(show);
+        if (show) dock->raise();
+    });
     content->setMinimumWidth(kPanelWidthPx);
     if (scrolls) {
         auto* area = new QScrollArea;
@@ -141,13 +151,12 @@ void MainWindow::restoreWindow() {
         QAction* action = (*mActions)[id];
         action->setChecked(shown.contains(action->objectName().toUtf8()));
     }
-    for (QDockWidget* dock : mDocks) dock->show();
-    mToolBar->show();
-    mToolOptions->show();
     mTools.setOptions(mSettings.toolOptions());
 }
 
 void MainWindow::storeWindow() {
+    // What Hide Panels hides is open.
+    (*mActions)[ActionId::HidePanels]->setChecked(false);
     mSettings.setBlob("geometry", saveGeometry());
     mSettings.setBlob("state", saveState(kStateVersion));
     QByteArrayList shown;

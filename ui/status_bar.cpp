@@ -46,17 +46,6 @@ QLabel* fixedLabel(const QString& widest, Qt::Alignment alignment) {
     return label;
 }
 
-// What is being done, of the stages that say it in the words of the method.
-QString stageText(const QString& stage) {
-    static const QHash<QString, const char*> kWords{{"features", QT_TR_NOOP("finding outlines")},
-                                                    {"initial-mesh", QT_TR_NOOP("laying out patches")},
-                                                    {"simplify", QT_TR_NOOP("choosing patches")},
-                                                    {"curves", QT_TR_NOOP("bending curves")},
-                                                    {"colours", QT_TR_NOOP("fitting colours")}};
-    const char* words = kWords.value(stage, nullptr);
-    return words ? QObject::tr(words) : stage;
-}
-
 // No finer than an estimate is.
 QString leftText(double seconds) {
     constexpr int kStep = 5, kMinute = 60;
@@ -80,6 +69,25 @@ QString statesText(const PatchMarks& marks) {
 
 QString countText(size_t count) {
     return QLocale().toString(qulonglong(count));
+}
+
+QString stageText(const QString& stage) {
+    static const QHash<QString, const char*> kWords{
+        {"features", QT_TRANSLATE_NOOP("QObject", "finding outlines")},
+        {"initial-mesh", QT_TRANSLATE_NOOP("QObject", "laying out patches")},
+        {"simplify", QT_TRANSLATE_NOOP("QObject", "choosing patches")},
+        {"curves", QT_TRANSLATE_NOOP("QObject", "bending curves")},
+        {"colours", QT_TRANSLATE_NOOP("QObject", "fitting colours")},
+        {"vectorize", QT_TRANSLATE_NOOP("QObject", "trying a number of patches")},
+        {"draft", QT_TRANSLATE_NOOP("QObject", "trying a draft")},
+        {"reading", QT_TRANSLATE_NOOP("QObject", "reading")},
+        {"drawing", QT_TRANSLATE_NOOP("QObject", "drawing")},
+        {"drawing the preview", QT_TRANSLATE_NOOP("QObject", "drawing the preview")},
+        {"measuring", QT_TRANSLATE_NOOP("QObject", "measuring")},
+        {"writing", QT_TRANSLATE_NOOP("QObject", "writing")},
+    };
+    const char* words = kWords.value(stage, nullptr);
+    return words ? QObject::tr(words) : QString();
 }
 
 QString zoomText(double scale) {
@@ -147,8 +155,8 @@ void StatusBar::showJob(const Job* job) {
     QString text = job->title();
     if (job->stopRequested())
         text += tr(" — stopping…");
-    else if (!job->stage().isEmpty())
-        text += tr(" — %1, %2 %").arg(stageText(job->stage())).arg(int(std::floor(job->fraction() * 100)));
+    else if (const QString stage = stageText(job->stage()); !stage.isEmpty())
+        text += tr(" — %1, %2 %").arg(stage).arg(int(std::floor(job->fraction() * 100)));
     if (const auto left = job->secondsLeft(); left && !job->stopRequested()) text += ", " + leftText(*left);
     mJobText->setText(text);
     mProgress->setValue(int(job->fraction() * kProgressSteps));
@@ -192,12 +200,15 @@ void StatusBar::showCounts(const DocumentSession* session, size_t features) {
                    .arg(countText(session->document().mesh.patchCount()), countText(features));
         if (const auto& difference = session->document().difference)
             text += tr("  ·  mean error %1").arg(QLocale().toString(difference->mae, 'f', 2));
+        else if (session->document().fitted)
+            text += tr("  ·  edited");
     } else if (session) {
         text = tr("Photo, %1 × %2").arg(session->width()).arg(session->height());
     }
     mCounts->setText(text);
-    mCounts->setToolTip(
-        tr("The mean error is in levels of 255, of the vector image at 100 % against the photo"));
+    mCounts->setToolTip(tr(
+        "The mean error is in levels of 255, of the vector image at 100 % against the photo; of one that has "
+        "been edited the heat map says more"));
 }
 
 }  // namespace tessera

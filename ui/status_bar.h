@@ -59,6 +59,8 @@ class StatusBar : public QStatusBar {
 
 // "2,000" in the user's language; "62.5 %" with no more digits than say something.
 QString countText(size_t count);
+// What is being done in a stage of a job, to a person; empty for a stage that nobody has words for.
+QString stageText(const QString& stage);
 QString zoomText(double scale);
 
 }  // namespace tessera

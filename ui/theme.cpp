@@ -2,10 +2,13 @@
 #include "ui/theme.h"
 
 #include <QApplication>
+#include <QDockWidget>
 #include <QPainter>
 #include <QPalette>
 #include <QProxyStyle>
 #include <QStyleOption>
+
+#include "ui/icons.h"
 
 namespace tessera {
 
@@ -59,8 +62,7 @@ const char* const kSheet = R"(
     QToolBar::separator { background: %1; width: 1px; height: 1px; margin: 4px; }
     QStatusBar { border-top: 1px solid %1; }
     QStatusBar::item { border: none; }
-    QDockWidget { titlebar-close-icon: none; }
-    QDockWidget::title { padding: 8px 14px 2px 14px; background: %8; }
+    QDockWidget::title { padding: 5px 14px 1px 14px; background: %8; }
     QToolTip { color: %2; background: %6; border: 1px solid %1; padding: 4px 6px; }
     QLabel[role="heading"] { color: %3; font-weight: bold; }
     QLabel[role="dim"] { color: %3; }
@@ -86,7 +88,7 @@ const char* const kSheet = R"(
 )";
 
 // Fusion without the shadows under disabled text, without pictures in dialogs' buttons and without gradients
-// on the fields that open or count, and with crosses in the theme's colours to close tabs by.
+// on the fields that open or count, and with crosses in the theme's colours to close tabs and panels by.
 class QuietStyle : public QProxyStyle {
   public:
     QuietStyle() : QProxyStyle("Fusion") {}
@@ -115,6 +117,15 @@ class QuietStyle : public QProxyStyle {
                   QStyleHintReturn* data) const override {
         if (hint == SH_EtchDisabledText || hint == SH_DialogButtonBox_ButtonsHaveIcons) return 0;
         return QProxyStyle::styleHint(hint, option, widget, data);
+    }
+
+    QIcon standardIcon(StandardPixmap which, const QStyleOption* option,
+                       const QWidget* widget) const override {
+        if (qobject_cast<const QDockWidget*>(widget)) {
+            if (which == SP_TitleBarCloseButton) return icon("close", widget->palette());
+            if (which == SP_TitleBarNormalButton) return icon("float", widget->palette());
+        }
+        return QProxyStyle::standardIcon(which, option, widget);
     }
 
     void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,

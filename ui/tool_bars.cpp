@@ -11,7 +11,6 @@
 #include <QStackedWidget>
 
 #include "core/edit/enclosed_region.h"
-#include "ui/action_table.h"
 #include "ui/panels/colour_field.h"
 #include "ui/widget_parts.h"
 
@@ -45,8 +44,8 @@ ToolBar::ToolBar(const ActionTable& actions, ToolManager& tools, QWidget* parent
     show();
 }
 
-ToolOptionsBar::ToolOptionsBar(ToolManager& tools, QWidget* parent)
-    : QToolBar(tr("Tool Options"), parent), mTools(tools), mPages(new QStackedWidget) {
+ToolOptionsBar::ToolOptionsBar(const ActionTable& actions, ToolManager& tools, QWidget* parent)
+    : QToolBar(tr("Tool Options"), parent), mActions(actions), mTools(tools), mPages(new QStackedWidget) {
     setObjectName("toolOptionsBar");
     setMovable(false);
     for (int i = 0; i < int(ToolId::Count); ++i) mPages->addWidget(new QWidget);
@@ -86,11 +85,13 @@ void ToolOptionsBar::makeColourPages() {
 
     const Page eyedropper = addPage(
         ToolId::Eyedropper, tr("Eyedropper"),
-        tr("Shift gives the colour to the selection, Alt swaps the source, O held picks from the photo"));
+        tr("Shift gives the colour to the selection, Alt swaps the source, %1 held picks from the photo"),
+        {ActionId::PeekOriginal});
     addColour(eyedropper, tr("Colour"), colour);
     addSource(eyedropper);
 
-    const Page brush = addPage(ToolId::Brush, tr("Recolour Brush"), tr("[ and ] change the size"));
+    const Page brush = addPage(ToolId::Brush, tr("Recolour Brush"), tr("%1 and %2 change the size"),
+                               {ActionId::SmallerBrush, ActionId::LargerBrush});
     addColour(brush, tr("Colour"), colour);
     addNumber(brush, tr("Size"), tr("The radius, in image pixels"), tr(" px"), .5, 2000, 1,
               [](ToolOptions& o) -> double& { return o.brushRadiusPx; });
@@ -118,7 +119,8 @@ void ToolOptionsBar::makeColourPages() {
 
 void ToolOptionsBar::makeShapePages() {
     const Page direct = addPage(ToolId::Direct, tr("Direct Select"),
-                                tr("Shift keeps to 45°, Alt breaks smooth joins, arrows nudge by a pixel"));
+                                tr("Shift keeps to 45°, Alt breaks smooth joins, %1 and %2 nudge by a pixel"),
+                                {ActionId::NudgeLeft, ActionId::NudgeRight});
     addSwitch(direct, tr("All handles"), tr("Show and take hold of handles that are not selected"),
               [](ToolOptions& o) -> bool& { return o.allHandles; });
     addSwitch(direct, tr("Refit colours"), tr("Fit the colours to the photo again after a change of shape"),
@@ -129,11 +131,12 @@ void ToolOptionsBar::makeShapePages() {
 }
 
 void ToolOptionsBar::makeViewPages() {
-    addPage(ToolId::Hand, tr("Hand"), tr("Drag to move; hold Space in any tool"));
+    addPage(ToolId::Hand, tr("Hand"), tr("Drag to move; hold %1 in any tool"), {ActionId::Pan});
     addPage(ToolId::Zoom, tr("Zoom"), tr("Click or draw a box; Alt zooms out"));
 }
 
-ToolOptionsBar::Page ToolOptionsBar::addPage(ToolId tool, const QString& name, const QString& hint) {
+ToolOptionsBar::Page ToolOptionsBar::addPage(ToolId tool, const QString& name, const QString& hint,
+                                             const QList<ActionId>& keys) {
     auto* widget = mPages->widget(int(tool));
     auto* row = new QHBoxLayout(widget);
     row->setContentsMargins(8, 2, 8, 2);
@@ -142,7 +145,17 @@ ToolOptionsBar::Page ToolOptionsBar::addPage(ToolId tool, const QString& name, c
     heading->setContentsMargins(0, 0, kHeadingGapPx, 0);
     row->addWidget(heading);
     row->addStretch(1);
-    auto* text = dimLabel(hint);
+    auto* text = dimLabel({});
+    const auto show = [=, this] {
+        QString words = hint;
+        for (const ActionId id : keys) {
+            const QString key = mActions[id]->shortcut().toString(QKeySequence::NativeText);
+            words = words.arg(key.isEmpty() ? tr("(no key)") : key);
+        }
+        text->setText(words);
+    };
+    show();
+    for (const ActionId id : keys) connect(mActions[id], &QAction::changed, text, show);
     text->setWordWrap(false);
     text->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     row->addWidget(text, 100);

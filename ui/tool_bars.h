@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "app/tools/tool_manager.h"
+#include "ui/action_table.h"
 
 class QHBoxLayout;
 class QStackedWidget;
 
 namespace tessera {
-
-class ActionTable;
 
 // Buttons of all tools, of which one is down.
 class ToolBar : public QToolBar {
@@ -28,7 +27,7 @@ class ToolOptionsBar : public QToolBar {
     Q_OBJECT
 
   public:
-    explicit ToolOptionsBar(ToolManager& tools, QWidget* parent = nullptr);
+    ToolOptionsBar(const ActionTable& actions, ToolManager& tools, QWidget* parent = nullptr);
 
   private:
     // A page of fields under construction.
@@ -37,7 +36,8 @@ class ToolOptionsBar : public QToolBar {
         QHBoxLayout* row;
     };
 
-    Page addPage(ToolId tool, const QString& name, const QString& hint);
+    // `hint` names the keys of these actions as %1, %2.
+    Page addPage(ToolId tool, const QString& name, const QString& hint, const QList<ActionId>& keys = {});
     void addNumber(const Page& page, const QString& name, const QString& tip, const QString& suffix,
                    double least, double most, double factor, double& (*field)(ToolOptions&));
     void addSwitch(const Page& page, const QString& name, const QString& tip, bool& (*field)(ToolOptions&));
@@ -51,6 +51,7 @@ class ToolOptionsBar : public QToolBar {
     void change(const std::function<void(ToolOptions&)>& edit);
     void refresh();
 
+    const ActionTable& mActions;
     ToolManager& mTools;
     QStackedWidget* mPages;
     std::vector<std::function<void(const ToolOptions&)>> mFields;  // show what they are about

@@ -44,7 +44,7 @@ QHBoxLayout* labelled(const QString& text, QWidget* field) {
 // A check box that is the action's other face.
 QCheckBox* boxFor(QAction* action) {
     auto* box = new QCheckBox(QString(action->text()).remove('&'));
-    box->setToolTip(action->toolTip());
+    showTipOf(*action, *box);
     box->setChecked(action->isChecked());
     box->setFocusPolicy(Qt::TabFocus);
     box->setEnabled(action->isEnabled());
@@ -102,7 +102,6 @@ AmountField* VectorizePanel::makeAmountField() {
     auto* amount = new AmountField(mSettings);
     connect(amount, &AmountField::draftWanted, this, &VectorizePanel::draftWanted);
     connect(amount, &AmountField::draftDropped, this, &VectorizePanel::draftDropped);
-    connect(amount, &AmountField::editingDone, this, &VectorizePanel::editingDone);
     return amount;
 }
 
@@ -122,10 +121,8 @@ QLayout* VectorizePanel::makeQualityRow() {
         tr("A draft takes seconds, the best some minutes. The last is the method of the "
            "paper that Tessera began with, to compare with"));
     mQuality->setCurrentIndex(mQuality->findData(mSettings.quality()));
-    connect(mQuality, &QComboBox::activated, this, [this] {
-        mSettings.setQuality(mQuality->currentData().toString());
-        emit editingDone();
-    });
+    connect(mQuality, &QComboBox::activated, this,
+            [this] { mSettings.setQuality(mQuality->currentData().toString()); });
     connect(mQuality, &QComboBox::currentIndexChanged, this, &VectorizePanel::showFieldsOfMethod);
     return labelled(tr("&Quality"), mQuality);
 }
@@ -160,7 +157,6 @@ QWidget* VectorizePanel::makeEdgeContrastPart() {
     mEdgeContrast->setValue(100 * mSettings.edgeContrast());
     connect(mEdgeContrast, &QDoubleSpinBox::valueChanged, this,
             [this](double percent) { mSettings.setEdgeContrast(percent / 100); });
-    connect(mEdgeContrast, &QDoubleSpinBox::editingFinished, this, &VectorizePanel::editingDone);
     mEdgeContrast->setToolTip(
         tr("Edges above this share of the strongest become features. Raise it where they hold too many "
            "patches"));
@@ -176,7 +172,7 @@ QPushButton* VectorizePanel::makeVectorizeButton(const ActionTable& actions) {
     button->setProperty("role", "primary");
     button->setMinimumHeight(34);
     button->setFocusPolicy(Qt::TabFocus);
-    button->setToolTip(vectorize->toolTip());
+    showTipOf(*vectorize, *button);
     button->setEnabled(vectorize->isEnabled());
     connect(button, &QPushButton::clicked, vectorize, &QAction::trigger);
     connect(vectorize, &QAction::enabledChanged, button, &QWidget::setEnabled);
@@ -188,7 +184,7 @@ QWidget* VectorizePanel::makePhotoMissingPart(const ActionTable& actions) {
     auto* button = new QPushButton(tr("Find the Photo…"));
     button->setObjectName("findPhoto");
     button->setFocusPolicy(Qt::TabFocus);
-    button->setToolTip(find->toolTip());
+    showTipOf(*find, *button);
     connect(button, &QPushButton::clicked, find, &QAction::trigger);
     auto* part = new QWidget;
     auto* column = partColumn(part);
@@ -321,6 +317,8 @@ void VectorizePanel::showSession(const DocumentSession* session, size_t features
     if (document.difference) {
         add(tr("Mean error"), tr("%1 of 255").arg(locale.toString(document.difference->mae, 'f', 2)));
         add(tr("PSNR"), tr("%1 dB").arg(locale.toString(document.difference->psnr, 'f', 1)));
+    } else if (document.fitted) {
+        add(tr("Mean error"), tr("edited since it was measured"));
     }
     if (!document.report.stages.empty())
         add(tr("Time"), tr("%1 s").arg(locale.toString(secondsOf(document.report), 'f', 1)));

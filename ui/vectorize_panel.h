@@ -41,8 +41,6 @@ class VectorizePanel : public QWidget {
     void showSession(const DocumentSession* session, size_t features);
 
   signals:
-    // The user has finished with a field: keys shall go to the canvas again.
-    void editingDone();
     // The draft of settings() would be good to see; it is not wanted any more.
     void draftWanted();
     void draftDropped();

@@ -1,6 +1,7 @@
 // See widget_parts.h.
 #include "ui/widget_parts.h"
 
+#include <QAction>
 #include <QFrame>
 #include <QGridLayout>
 #include <QLabel>
@@ -25,6 +26,12 @@ QFrame* separatorLine() {
     auto* frame = new QFrame;
     frame->setProperty("role", "line");
     return frame;
+}
+
+void showTipOf(const QAction& action, QWidget& widget) {
+    widget.setToolTip(action.toolTip());
+    QObject::connect(&action, &QAction::changed, &widget,
+                     [&action, &widget] { widget.setToolTip(action.toolTip()); });
 }
 
 QVBoxLayout* partColumn(QWidget* part) {

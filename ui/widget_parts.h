@@ -3,6 +3,7 @@
 
 #include <QString>
 
+class QAction;
 class QFrame;
 class QGridLayout;
 class QLabel;
@@ -19,5 +20,8 @@ QFrame* separatorLine();
 // The layouts of a part that lies in another layout: without margins.
 QVBoxLayout* partColumn(QWidget* part);
 QGridLayout* partGrid(QWidget* part);
+
+// Gives the widget the action's tip, and whatever that becomes when the keys are others.
+void showTipOf(const QAction& action, QWidget& widget);
 
 }  // namespace tessera

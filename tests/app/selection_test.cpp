@@ -57,6 +57,24 @@ TEST_F(SelectionTest, SignalsOnceAndOnlyChanges) {
     EXPECT_EQ(session.history().count(), 0) << "selecting is no edit";
 }
 
+TEST_F(SelectionTest, PointsAndCurvesHavePatches) {
+    const HalfedgeMesh& connectivity = mesh().connectivity();
+    const PatchId patch(7);
+    const HalfedgeId side = connectivity.sides(patch)[0];
+    const VertexId corner = connectivity.origin(side);
+    selection.setShape({ControlPointRef::of(patch)}, {});
+    EXPECT_EQ(selectionsPatches(session), PatchSet{patch});
+    selection.setShape({ControlPointRef::of(side)}, {});
+    const PatchSet beside = selectionsPatches(session);
+    EXPECT_TRUE(std::binary_search(beside.begin(), beside.end(), patch));
+    selection.setShape({}, {HalfedgeMesh::edge(side)});
+    EXPECT_EQ(selectionsPatches(session), beside);
+    selection.setShape({ControlPointRef::of(corner)}, {});
+    const PatchSet around = selectionsPatches(session);
+    EXPECT_EQ(subtracted(beside, around), PatchSet());
+    EXPECT_GT(around.size(), beside.size());
+}
+
 TEST_F(SelectionTest, PartsOfWhatWasSplitAreSelected) {
     selection.setPatches(ids({6, 11}));
     const size_t before = mesh().patchCount();

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "tests/support/gl.h"
@@ -79,7 +80,7 @@ TEST_F(Context, IsLeftAsItWas) {
     const VertexArray vertexArray = makeVertexArray();
     glBindVertexArray(vertexArray.name());
     Texture texture(GL_RGBA8);
-    texture.resize(4, 4);
+    texture.reserve(4, 4);
     glActiveTexture(GL_TEXTURE2);
     glBindTexture(GL_TEXTURE_2D, texture.name());
     glActiveTexture(GL_TEXTURE1);
@@ -114,6 +115,62 @@ TEST_F(Context, IsLeftAsItWas) {
     }
     // The scissor was off meanwhile.
     EXPECT_GT(target.read(4).at(30, 20, 3), 0);
+}
+
+TEST_F(Context, ErrorsSinceTheLastCallAreToldOnce) {
+    EXPECT_TRUE(checkDrawn());
+    glEnable(GL_TRIANGLES);
+    const auto failed = checkDrawn();
+    ASSERT_FALSE(failed);
+    EXPECT_NE(failed.error().message.find(std::to_string(GL_INVALID_ENUM)), std::string::npos);
+    EXPECT_TRUE(checkDrawn());
+}
+
+// The canvas and the overview take turns: neither is drawn into storage that has to be made first.
+TEST_F(Context, AFrameIsTheSameInATargetThatWasLarger) {
+    const PatchMesh mesh = testing::curvedMesh(60, 40, 4, 3, 1);
+    for (const bool subdivision : {false, true}) {
+        auto renderer = Renderer::create();
+        ASSERT_TRUE(renderer);
+        renderer->setMesh(mesh);
+        OffscreenTarget target(120, 50);
+        const auto frame = [&](double scale) {
+            const View view = wholePicture(mesh, {scale, scale});
+            target.resize(view.width, view.height);
+            target.bind();
+            EXPECT_TRUE(renderer->draw(view, {.computeSubdivision = subdivision}));
+            return target.read(4);
+        };
+        const Image small = frame(1), large = frame(2), again = frame(1);
+        EXPECT_EQ(large.width(), 120);
+        EXPECT_EQ(large.height(), 80);
+        ASSERT_EQ(again.width(), 60);
+        ASSERT_EQ(again.height(), 40);
+        for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::ranges::equal(again.plane(c), small.plane(c)));
+    }
+}
+
+TEST_F(Context, BytesAreTheRoundedFloats) {
+    const PatchMesh mesh = testing::curvedMesh(60, 40, 4, 3, 1);
+    auto renderer = Renderer::create();
+    ASSERT_TRUE(renderer);
+    renderer->setMesh(mesh);
+    const View view = wholePicture(mesh, {1, 1});
+    const OffscreenTarget floats(60, 40), bytes(60, 40, GL_RGBA8);
+    for (const OffscreenTarget* target : {&floats, &bytes}) {
+        target->bind();
+        ASSERT_TRUE(renderer->draw(view));
+    }
+    const Image expected = floats.read(4);
+    std::vector<uint32_t> argb(size_t(60 * 40));
+    bytes.readArgb(argb);
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 60; ++x)
+            for (int c = 0; c < 4; ++c) {
+                const uint32_t pixel = argb[size_t(y * 60 + x)];
+                const int value = int(pixel >> (c == 3 ? 24 : 16 - 8 * c) & 0xffU);
+                ASSERT_NEAR(value, 255 * std::clamp(expected.at(x, y, c), 0.F, 1.F), .51) << x << ' ' << y;
+            }
 }
 
 TEST_F(Context, AFrameFillsTheViewportAndNothingElse) {

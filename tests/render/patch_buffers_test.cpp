@@ -15,11 +15,30 @@ using ::testing::IsEmpty;
 
 TEST(Coalesced, JoinsWhatLiesNear) {
     std::vector<uint32_t> indices{40, 3, 4, 4, 20, 12, 5};
-    EXPECT_THAT(coalesced(indices, 8), ElementsAre(IndexRange{3, 21}, IndexRange{40, 41}));
+    EXPECT_THAT(coalesced(indices, 100, 8), ElementsAre(IndexRange{3, 21}, IndexRange{40, 41}));
     std::vector<uint32_t> apart{0, 2};
-    EXPECT_THAT(coalesced(apart, 0), ElementsAre(IndexRange{0, 1}, IndexRange{2, 3}));
+    EXPECT_THAT(coalesced(apart, 100, 0), ElementsAre(IndexRange{0, 1}, IndexRange{2, 3}));
     std::vector<uint32_t> none;
-    EXPECT_THAT(coalesced(none, 8), IsEmpty());
+    EXPECT_THAT(coalesced(none, 100, 8), IsEmpty());
+}
+
+TEST(Coalesced, LeavesOutWhatIsGone) {
+    std::vector<uint32_t> indices{2, 9, 10, 11};
+    EXPECT_THAT(coalesced(indices, 10, 8), ElementsAre(IndexRange{2, 10}));
+    EXPECT_THAT(coalesced(indices, 2, 8), IsEmpty());
+}
+
+class MirrorBufferTest : public testing::GlTest {};
+
+TEST_F(MirrorBufferTest, UploadsNothingBeyondItsEndAfterGrowingAndShrinking) {
+    MirrorBuffer<glm::ivec4> buffer(GL_RGBA32I);
+    buffer.resize(64);
+    buffer.upload();
+    buffer.resize(4);
+    buffer.upload();
+    buffer.resize(40);
+    buffer.resize(6);
+    EXPECT_EQ(buffer.upload(), 2 * sizeof(glm::ivec4));
 }
 
 TEST(TermHeapTest, RunsAreApartAndUsedAgain) {

@@ -10,6 +10,7 @@
 #include "core/export/rasterize.h"
 #include "core/mesh/mesh_validate.h"
 #include "tests/ui/main_window_fixture.h"
+#include "ui/panels/gesture_slider.h"
 #include "ui/status_bar.h"
 #include "ui/theme.h"
 
@@ -206,6 +207,108 @@ TEST_F(Editing, TheSelectionIsOutlinedAndFitsTheView) {
     EXPECT_GT(canvas().view().scale(), scale);
     key(Qt::Key_QuoteLeft);
     EXPECT_EQ(canvas().view().scale(), scale);
+}
+
+TEST_F(Editing, ASelectedPointFitsTheView) {
+    key(Qt::Key_A);
+    const glm::dvec2 from = toPixels(mesh().position(innerVertex()));
+    click(at(from.x, from.y));
+    ASSERT_EQ(session()->selection().points().size(), 1u);
+    const double scale = canvas().view().scale();
+    key(Qt::Key_3);
+    EXPECT_GT(canvas().view().scale(), scale);
+    EXPECT_TRUE(canvas().visiblePart().contains(QPointF(from.x, from.y)));
+}
+
+TEST_F(Editing, EachTabKeepsItsViewAndItsZoomBefore) {
+    const QString second = folder.filePath("second.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    window->open(second);
+    ASSERT_TRUE(idle());
+    ASSERT_TRUE(QTest::qWaitFor([&] { return window->tabs().isVisible(); }, kWaitMs));
+    QTest::qWait(20);
+    workspace().setCurrent(workspace().sessions().first());
+    for (int i = 0; i < 5; ++i) wheel(QPointF(at(80, 60)), 1, Qt::ControlModifier);
+    const ViewTransform first = canvas().view();
+    workspace().setCurrent(workspace().sessions().last());
+    const ViewTransform fitted = canvas().view();
+    EXPECT_FALSE(fitted == first);
+    key(Qt::Key_QuoteLeft);
+    EXPECT_EQ(canvas().view(), fitted) << "no zoom before: that of the other tab is not this one's";
+    workspace().setCurrent(workspace().sessions().first());
+    EXPECT_EQ(canvas().view(), first);
+    key(Qt::Key_QuoteLeft);
+    EXPECT_LT(canvas().view().scale(), first.scale());
+    key(Qt::Key_QuoteLeft);
+    EXPECT_EQ(canvas().view(), first);
+    workspace().setCurrent(workspace().sessions().last());
+    // It still follows the window, which is no zoom of the user's.
+    window->resize(800, 560);
+    QTest::qWait(20);
+    EXPECT_LE(canvas().view().scale(), fitted.scale());
+    workspace().setCurrent(workspace().sessions().first());
+    EXPECT_EQ(canvas().view().scale(), first.scale());
+    EXPECT_FALSE(canvas().visiblePart().isEmpty());
+    key(Qt::Key_0, Qt::ControlModifier);
+    window->resize(1000, 700);
+    QTest::qWait(20);
+    key(Qt::Key_QuoteLeft);
+    EXPECT_EQ(canvas().view().scale(), first.scale()) << "a resize is no zoom";
+}
+
+TEST_F(Editing, ADragOfTheNavigatorsSliderIsOneZoom) {
+    auto* dock = window->findChild<QWidget*>("navigatorDock");
+    auto* zoom = dock->findChild<GestureSlider*>("zoom");
+    ASSERT_NE(zoom, nullptr);
+    const ViewTransform before = canvas().view();
+    const int y = zoom->height() / 2;
+    const QPoint from(int(zoom->xOf(zoom->value())), y);
+    QTest::mousePress(zoom, Qt::LeftButton, {}, from);
+    for (int i = 1; i <= 6; ++i) QTest::mouseMove(zoom, from + QPoint(6 * i, 0));
+    QTest::mouseRelease(zoom, Qt::LeftButton, {}, from + QPoint(36, 0));
+    EXPECT_GT(canvas().view().scale(), before.scale());
+    canvas().setFocus();
+    key(Qt::Key_QuoteLeft);
+    EXPECT_EQ(canvas().view(), before);
+}
+
+TEST_F(Editing, TheColourUnderTheCursorIsTheOneSeenThere) {
+    key(Qt::Key_A, Qt::ControlModifier);
+    ASSERT_TRUE(recolourSelection(*session(), "Replace Colour", ReplaceColour{{.1, .6, .2}}, {}));
+    key(Qt::Key_A, Qt::ControlModifier | Qt::ShiftModifier);
+    ASSERT_TRUE(settled());
+    QColor colour;
+    const QObject scope;
+    QObject::connect(&canvas(), &CanvasWidget::cursorMoved, &scope,
+                     [&](std::optional<QPointF>, QColor shown) { colour = shown; });
+    key(Qt::Key_I);
+    const auto swatch = [&] { return window->tools().overlay().swatch->colour; };
+    const QPoint left = at(60, 60), right = at(100, 60);
+    const QColor orange(240, 180, 60);
+    std::optional<QPointF> cursor;
+    QObject::connect(&canvas(), &CanvasWidget::cursorMoved, &scope,
+                     [&](std::optional<QPointF> image) { cursor = image; });
+    // The pointer moves by way of the X server.
+    const auto moveTo = [&](QPoint position) {
+        QTest::mouseMove(&canvas(), position);
+        ASSERT_TRUE(QTest::qWaitFor(
+            [&] { return cursor && canvas().toWidget(*cursor).toPoint() == position; }, kWaitMs));
+    };
+    moveTo(left);
+    EXPECT_GT(colour.green(), colour.red());
+    action(ActionId::Split)->trigger();
+    EXPECT_EQ(colour, orange);
+    EXPECT_GT(swatch().r, swatch().g);
+    moveTo(right);
+    EXPECT_GT(colour.green(), colour.red());
+    EXPECT_GT(swatch().g, swatch().r);
+    action(ActionId::Split)->trigger();
+    action(ActionId::XRay)->trigger();
+    EXPECT_EQ(colour, orange) << "the lens is there though the pointer rests";
+    EXPECT_GT(swatch().r, swatch().g);
+    action(ActionId::XRay)->trigger();
+    EXPECT_GT(colour.green(), colour.red());
+    EXPECT_GT(swatch().g, swatch().r);
 }
 
 TEST_F(Editing, SplitViewShowsThePhotoLeftOfItsLine) {

@@ -5,6 +5,7 @@
 #include "core/edit/recolour.h"
 #include "core/export/rasterize.h"
 #include "tests/ui/main_window_fixture.h"
+#include "ui/gl_drawer.h"
 
 namespace tessera {
 namespace {
@@ -34,6 +35,35 @@ class GlCanvas : public MainWindowTest {
 TEST_F(GlCanvas, ShowsWhatTheCpuDraws) {
     EXPECT_LT(difference(shown(), drawnByTheCpu()), .5);
     EXPECT_GT(difference(shown(), drawnByTheCpu().mirrored()), 5) << "the comparison sees nothing";
+}
+
+// Bytes are read back: each is the one that the CPU's frame would have been rounded to, or the next.
+TEST_F(GlCanvas, TransparencyIsThatOfTheCpu) {
+    session()->selection().setPatches({PatchId(0), PatchId(1), PatchId(2), PatchId(3)});
+    action(ActionId::CutOut)->trigger();
+    ASSERT_TRUE(settled());
+    const auto drawer = makeCanvasRenderer(true).drawer;
+    const PatchMesh& mesh = session()->document().mesh;
+    drawer->setMesh(mesh);
+    const View view = wholePicture(mesh, {1, 1});
+    const auto frame = drawer->draw(view);
+    ASSERT_TRUE(frame.has_value()) << frame.error().message;
+    const auto drawn = rasterize(mesh, view, {.samples = kPictureSamples, .showHidden = false});
+    const QImage expected = toQImage(*drawn);
+    ASSERT_EQ(frame->format(), QImage::Format_ARGB32_Premultiplied);
+    ASSERT_EQ(frame->size(), expected.size());
+    int clear = 0, far = 0;
+    for (int y = 0; y < expected.height(); ++y)
+        for (int x = 0; x < expected.width(); ++x) {
+            const QRgb a = frame->pixel(x, y), b = expected.pixel(x, y);
+            clear += qAlpha(a) == 0 ? 1 : 0;
+            far += std::abs(qRed(a) - qRed(b)) > 2 || std::abs(qGreen(a) - qGreen(b)) > 2 ||
+                           std::abs(qBlue(a) - qBlue(b)) > 2 || std::abs(qAlpha(a) - qAlpha(b)) > 2
+                       ? 1
+                       : 0;
+        }
+    EXPECT_GT(clear, 0);
+    EXPECT_LT(far, expected.width() * expected.height() / 200);
 }
 
 TEST_F(GlCanvas, FollowsEdits) {

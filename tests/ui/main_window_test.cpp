@@ -543,6 +543,27 @@ TEST_F(MainWindowTest, ReadsTheColourUnderTheCursor) {
     EXPECT_EQ(colour, QColor(240, 180, 60));
 }
 
+TEST_F(MainWindowTest, TheProcessorDrawsOnWhereTheGraphicsCardFails) {
+    struct Lost : FrameDrawer {
+        void setMesh(const PatchMesh&) override {}
+        void update(const PatchMesh&, std::span<const PatchId>) override {}
+        Result<QImage> draw(const View&) override {
+            return failure(ErrorCode::Internal, "the graphics card was reset");
+        }
+    };
+    openPhoto();
+    vectorize();
+    const QImage before = grab();
+    canvas().setDrawer(std::make_unique<Lost>());
+    ASSERT_TRUE(settled());
+    EXPECT_FALSE(canvas().drawnWithOpenGl());
+    EXPECT_EQ(difference(grab(), before), 0);
+    bool said = false;
+    for (auto* label : window->status().findChildren<QLabel*>())
+        said |= label->text() == "CPU" && label->toolTip().contains("the graphics card was reset");
+    EXPECT_TRUE(said);
+}
+
 TEST_F(MainWindowTest, VectorizesAPhotograph) {
     const QString path = QString(TESSERA_TEST_IMAGES) + "/kodak/kodim23.png";
     if (!QFile::exists(path)) GTEST_SKIP() << "no photographs: " << path.toStdString() << " does not exist";

@@ -109,6 +109,31 @@ TEST_F(RecolourPanelTest, ASliderIsTakenUpAgain) {
     EXPECT_EQ(colourOf(column(0)[0]), meanColour(stripes(), column(0)[0]).srgb) << "to the bit";
 }
 
+// The rest after a step is no reason to lose it.
+TEST_F(RecolourPanelTest, AGestureThatWaitsForMoreIsKeptWhenTheSelectionChanges) {
+    select(column(0));
+    slider("hue")->setFocus();
+    wheel(slider("hue"), 40);
+    ASSERT_TRUE(session->editing());
+    session->selection().setPatches(column(1));
+    EXPECT_FALSE(session->editing());
+    ASSERT_EQ(history().count(), 1);
+    EXPECT_GT(glm::distance(colourOf(column(0)[0]), {.8, .3, .2}), .1);
+    EXPECT_LT(glm::distance(colourOf(column(1)[0]), {.2, .3, .8}), 1e-6);
+    QTest::qWait(5);
+    EXPECT_EQ(slider("hue")->value(), 0) << "of the new selection";
+}
+
+TEST_F(RecolourPanelTest, AGestureThatWaitsForMoreIsKeptWhenAnotherDocumentIsShown) {
+    select(column(0));
+    slider("hue")->setFocus();
+    wheel(slider("hue"), 40);
+    ASSERT_TRUE(session->editing());
+    panel.setSession(nullptr);
+    EXPECT_FALSE(session->editing());
+    EXPECT_EQ(history().count(), 1);
+}
+
 TEST_F(RecolourPanelTest, AnotherKindBeginsWithWhatIsThere) {
     select(column(0));
     dragTo(slider("lightness"), 20);

@@ -49,12 +49,10 @@ QList<Group> gestureGroups() {
     return {{tr("Look around"),
              {{tr("Ctrl + wheel, pinch"), tr("Zoom at the cursor")},
               {tr("Wheel"), tr("Scroll; with Shift, sideways")},
-              {tr("Space + drag"), tr("Move the picture")},
-              {tr("Middle button"), tr("Move the picture")},
-              {tr("O, held"), tr("See the original")}}},
+              {tr("Middle button"), tr("Move the picture")}}},
             {tr("Select"),
              {{tr("Click"), tr("Select a patch")},
-              {tr("Drag"), tr("Select what a frame touches")},
+              {tr("Drag"), tr("Select the patches whose middle is in a frame")},
               {tr("Shift"), tr("Add to the selection")},
               {tr("Alt"), tr("Take from the selection")},
               {tr("Double-click"), tr("Select up to the features around")}}},
@@ -63,9 +61,9 @@ QList<Group> gestureGroups() {
               {tr("Drag a curve"), tr("Bend it")},
               {tr("Shift"), tr("Keep to the axes and diagonals")},
               {tr("Alt"), tr("Break a smooth join")},
-              {tr("Arrow keys"), tr("Nudge by an image pixel")},
-              {tr("Shift + arrows"), tr("Nudge by ten")},
-              {tr("Alt + arrows"), tr("Nudge by a screen pixel")},
+              {tr("Nudge keys"), tr("Move by an image pixel")},
+              {tr("Shift + nudge"), tr("Move by ten")},
+              {tr("Alt + nudge"), tr("Move by a screen pixel")},
               {tr("Escape"), tr("Give a drag up")}}}};
 }
 

@@ -30,7 +30,7 @@ class ColourPopup : public QFrame {
 
   signals:
     void previewed(glm::dvec3 srgb);
-    // It has been closed with another colour than it was opened with, or with Escape.
+    // It has been closed: with another colour than it was opened with, or else with that, as by Escape.
     void chosen(glm::dvec3 srgb);
     void cancelled();
 

@@ -1,6 +1,7 @@
 // See gesture_slider.h.
 #include "ui/panels/gesture_slider.h"
 
+#include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
@@ -82,6 +83,7 @@ void GestureSlider::moveTo(int value) {
     if (!mUnderWay) {
         mUnderWay = true;
         mBefore = this->value();
+        qApp->installEventFilter(this);
         emit begun();
     }
     setValue(value);
@@ -93,9 +95,14 @@ void GestureSlider::step(int value) {
     if (mUnderWay) mRest.start();
 }
 
-void GestureSlider::finish() {
+bool GestureSlider::endGesture() {
     mRest.stop();
-    if (!std::exchange(mUnderWay, false)) return;
+    qApp->removeEventFilter(this);
+    return std::exchange(mUnderWay, false);
+}
+
+void GestureSlider::finish() {
+    if (!endGesture()) return;
     if (value() == mBefore)
         emit cancelled();
     else
@@ -103,9 +110,8 @@ void GestureSlider::finish() {
 }
 
 void GestureSlider::cancel() {
-    mRest.stop();
     mPressed = false;
-    if (!std::exchange(mUnderWay, false)) return;
+    if (!endGesture()) return;
     setValue(mBefore);
     emit cancelled();
 }
@@ -181,6 +187,18 @@ bool GestureSlider::event(QEvent* event) {
         }
     }
     return QSlider::event(event);
+}
+
+bool GestureSlider::eventFilter(QObject* watched, QEvent* event) {
+    if (mPressed || !watched->isWidgetType()) return false;
+    if (event->type() == QEvent::ShortcutOverride) {
+        // Before a shortcut is looked for: whether there is something to undo may change.
+        const int key = static_cast<QKeyEvent*>(event)->key();
+        if (key != Qt::Key_Escape && !keyTarget(key)) finish();
+    } else if (event->type() == QEvent::MouseButtonPress && watched != this) {
+        finish();
+    }
+    return false;
 }
 
 void GestureSlider::keyPressEvent(QKeyEvent* event) {

@@ -11,7 +11,8 @@ namespace tessera {
 // Horizontal. With a neutral value it is dragged relatively, a double click (or Delete) goes back to neutral,
 // and the track is filled from there; without one a press goes where it is. The wheel turns it only while it
 // has the focus, so that panels scroll. Turns of the wheel and steps that follow each other closely are one
-// gesture. Escape cancels a drag.
+// gesture, which also ends with whatever else the person does: what that is about is then the document with
+// the gesture in it, be it undo or another selection. Escape cancels a drag.
 class GestureSlider : public QSlider {
     Q_OBJECT
 
@@ -41,6 +42,7 @@ class GestureSlider : public QSlider {
 
   protected:
     bool event(QEvent* event) override;
+    bool eventFilter(QObject* watched, QEvent* event) override;
     void paintEvent(QPaintEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
@@ -56,6 +58,8 @@ class GestureSlider : public QSlider {
     QRectF track() const;
     int valueAt(double x) const;
     void moveTo(int value);
+    // Forgets the gesture; whether there was one.
+    bool endGesture();
     void cancel();
     // The value that a key asks for.
     std::optional<int> keyTarget(int key) const;

@@ -1,7 +1,7 @@
 // See hex_field.h.
 #include "ui/panels/hex_field.h"
 
-#include <QEvent>
+#include <QKeyEvent>
 #include <QRegularExpressionValidator>
 
 #include "ui/conversions.h"
@@ -31,6 +31,11 @@ void HexField::enter() {
     const bool another = valid && typed.name() != hexText(mColour);
     setColour(another ? toSrgb(typed) : mColour);
     if (another) emit entered(mColour);
+}
+
+void HexField::keyPressEvent(QKeyEvent* event) {
+    if (event->key() == Qt::Key_Escape) setColour(mColour);
+    QLineEdit::keyPressEvent(event);
 }
 
 void HexField::changeEvent(QEvent* event) {

@@ -17,11 +17,12 @@ class HexField : public QLineEdit {
     void setColour(glm::dvec3 srgb);
 
   signals:
-    // Another colour has been typed. What is none gives way to the one from before.
+    // Another colour has been typed. What is none gives way to the one from before, as all does at Escape.
     void entered(glm::dvec3 srgb);
 
   protected:
     void changeEvent(QEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
 
   private:
     void enter();

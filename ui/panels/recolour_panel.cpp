@@ -233,7 +233,7 @@ void RecolourPanel::connectReplace() {
 
 void RecolourPanel::setSession(DocumentSession* session) {
     mReplace.reset();
-    mAdjustment.reset();
+    finishAdjustment();
     if (mSession) {
         mSession->disconnect(this);
         mSession->selection().disconnect(this);
@@ -244,7 +244,7 @@ void RecolourPanel::setSession(DocumentSession* session) {
             if (change.mesh() && !change.preview) refreshSoon();
         });
         connect(&session->selection(), &Selection::changed, this, [this] {
-            mAdjustment.reset();
+            finishAdjustment();
             refreshSoon();
         });
         connect(session, &QObject::destroyed, this, [this] { setSession(nullptr); });
@@ -308,6 +308,12 @@ void RecolourPanel::beginRow(Row row, const QString& text) {
     // Those of other kinds are neutral again: what they did is what this begins with.
     for (int other = 0; other < RowCount; ++other)
         if (recolouring(Row(other)).index() != kind.index()) setRow(Row(other), 0);
+}
+
+void RecolourPanel::finishAdjustment() {
+    // A gesture that waits for further steps is what the person wants, of the selection that it began with.
+    for (const Slider& row : mSliders) row.slider->finish();
+    mAdjustment.reset();
 }
 
 void RecolourPanel::setRow(Row row, double value) {

@@ -58,6 +58,7 @@ class RecolourPanel : public LazyPanel {
     Recolouring recolouring(Row row) const;
     RecolourOptions recolourOptions() const;
     void beginRow(Row row, const QString& text);
+    void finishAdjustment();
     void showValues();
     void setRow(Row row, double value);
 

@@ -14,6 +14,7 @@
 
 #include "app/selection_actions.h"
 #include "app/tools/tool_manager.h"
+#include "ui/action_table.h"
 #include "ui/panels/panel_parts.h"
 #include "ui/widget_parts.h"
 
@@ -118,10 +119,9 @@ QWidget* SelectionPanel::makeButtons() {
         return button;
     };
     fillGrid(grid,
-             {add(tr("All"), tr("Select all patches (Ctrl+A)"), "all", false, &selectAll),
-              mNone = add(tr("None"), tr("Select nothing (Ctrl+Shift+A)"), "none", false, &selectNone),
-              add(tr("Invert"), tr("Select what is not selected (Ctrl+Shift+I)"), "invert", false,
-                  &invertSelection),
+             {add(tr("All"), tr("Select all patches"), "all", false, &selectAll),
+              mNone = add(tr("None"), tr("Select nothing"), "none", false, &selectNone),
+              add(tr("Invert"), tr("Select what is not selected"), "invert", false, &invertSelection),
               add(tr("Grow"), tr("Add the patches around the selection"), "grow", true, &growSelection),
               add(tr("Shrink"), tr("Take the outermost patches away"), "shrink", true, &shrinkSelection),
               add(tr("Similar"), tr("Add patches of similar colour, as the wand is set"), "similar", true,
@@ -130,6 +130,14 @@ QWidget* SelectionPanel::makeButtons() {
                   })},
              3);
     return part;
+}
+
+void SelectionPanel::showTipsOf(const ActionTable& actions) {
+    for (const auto& [name, id] :
+         {std::pair{"all", ActionId::SelectAll}, std::pair{"none", ActionId::SelectNone},
+          std::pair{"invert", ActionId::InvertSelection}, std::pair{"grow", ActionId::GrowSelection},
+          std::pair{"shrink", ActionId::ShrinkSelection}, std::pair{"similar", ActionId::SelectSimilar}})
+        showTipOf(*actions[id], *findChild<QPushButton*>(name));
 }
 
 QWidget* SelectionPanel::makeStoredPart() {

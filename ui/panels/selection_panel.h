@@ -13,6 +13,7 @@ class QPushButton;
 
 namespace tessera {
 
+class ActionTable;
 class DocumentSession;
 class ToolManager;
 
@@ -48,6 +49,8 @@ class SelectionPanel : public LazyPanel {
     void setSession(DocumentSession* session);
     // Whose wand says what is similar; outlives the panel.
     void setToolOptions(const ToolManager& tools) { mTools = &tools; }
+    // The buttons say what the actions that do the same say, with their keys.
+    void showTipsOf(const ActionTable& actions);
 
   signals:
     // One sentence for the person.
