@@ -93,7 +93,13 @@ void DocumentSession::setEditing(bool editing) {
         QMetaObject::invokeMethod(this, &DocumentSession::runWaiting, Qt::QueuedConnection);
 }
 
+void DocumentSession::retire() {
+    mRetired = true;
+    mWaiting.clear();
+}
+
 void DocumentSession::whenIdle(std::function<void()> work) {
+    if (mRetired) return;
     // After what waits already, even if nothing is in its way any more.
     if (!mEditing && mWaiting.empty()) return work();
     mWaiting.push_back(std::move(work));

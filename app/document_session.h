@@ -66,8 +66,10 @@ class DocumentSession : public QObject {
     // Whether an EditSession is open: the document then is a preview, without a revision of its own.
     bool editing() const { return mEditing; }
     // Runs `work` now, or as soon as no EditSession is open (from the event loop, in the order in which it
-    // was asked for). Not at all where the session goes first.
+    // was asked for). Not at all where the session is retired first.
     void whenIdle(std::function<void()> work);
+    // The document has been closed: what waits is dropped, and so is all that comes later.
+    void retire();
 
     // Tells the session that `revision` is now in the file at `path`, with the step to which its colours were
     // rounded.
@@ -102,6 +104,7 @@ class DocumentSession : public QObject {
     uint64_t mRevision = 1;
     uint64_t mSavedRevision = 1;
     bool mEditing = false;
+    bool mRetired = false;
     std::deque<std::function<void()>> mWaiting;
     History mHistory;
     Selection mSelection;

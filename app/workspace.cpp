@@ -1,4 +1,5 @@
-// See workspace.h. Vectorizing, saving and exporting are in workspace_jobs.cpp.
+// See workspace.h. Vectorizing, saving and exporting are in workspace_jobs.cpp, closing in
+// workspace_closing.cpp.
 #include "app/workspace.h"
 
 #include <QFileInfo>
@@ -123,61 +124,6 @@ void Workspace::applyRelinked(DocumentSession& session, OpenedFile opened, const
                .text = tr("“%1” is not the picture that the document was made from.").arg(name),
                .actionText = tr("Use It Anyway"),
                .action = apply});
-}
-
-void Workspace::close(DocumentSession* session, const AskToClose& ask, std::function<void(bool)> then) {
-    const QPointer<DocumentSession> target = session;
-    const auto finished = [then](bool closed) {
-        if (then) then(closed);
-    };
-    stopAll(JobKind::Edit, session);
-    session->whenIdle([this, target, ask, finished] {
-        if (Job* job = find(JobKind::Save, target)) {
-            // It may make the question needless.
-            connect(job, &Job::finished, this, [this, target, ask, finished] {
-                if (target) close(target, ask, finished);
-            });
-            return;
-        }
-        if (target->modified()) {
-            const CloseAnswer answer = ask(*target);
-            if (!target || answer.kind == CloseAnswer::Kind::Cancel) return finished(false);
-            const QString path = answer.path.isEmpty() ? target->path() : answer.path;
-            if (answer.kind == CloseAnswer::Kind::Save) {
-                if (path.isEmpty()) return finished(false);
-                return save(target, path, answer.embedPhoto, [this, target, ask, finished](bool written) {
-                    if (!written) return finished(false);
-                    if (target) close(target, ask, finished);
-                });
-            }
-        }
-        remove(target);
-        finished(true);
-    });
-}
-
-void Workspace::closeAll(const AskToClose& ask, std::function<void(bool)> then) {
-    if (mSessions.isEmpty()) return then(true);
-    close(mSessions.last(), ask, [this, ask, then = std::move(then)](bool closed) {
-        if (!closed) return then(false);
-        closeAll(ask, then);
-    });
-}
-
-void Workspace::remove(DocumentSession* session) {
-    stopAll(JobKind::Vectorize, session);
-    stopAll(JobKind::Relink, session);
-    stopAll(JobKind::Drafts, session);
-    const qsizetype at = mSessions.indexOf(session);
-    mSessions.removeAt(at);
-    // The neighbour on the right takes its place, or else the one on the left.
-    if (session == mCurrent)
-        setCurrent(mSessions.isEmpty() ? nullptr : mSessions[std::min(at, mSessions.size() - 1)]);
-    emit sessionClosed(session);
-    // A later session could have the same address.
-    for (RunningJob& running : mJobs)
-        if (running.session == session) running.session = nullptr;
-    session->deleteLater();
 }
 
 void Workspace::setHistoryLimit(size_t bytes) {

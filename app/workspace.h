@@ -2,11 +2,13 @@
 // that the rules (what stops what, what is thrown away when) are in one place and testable.
 #pragma once
 
+#include <QHash>
 #include <QImage>
 #include <QList>
 #include <QObject>
 #include <QPointer>
 #include <QSet>
+#include <QStringList>
 #include <functional>
 
 #include "app/document_session.h"
@@ -30,7 +32,17 @@ struct CloseAnswer {
     QString path = {};
     bool embedPhoto = true;
 };
-using AskToClose = std::function<CloseAnswer(DocumentSession&)>;
+
+// What to do with work that would be lost by closing: close when it is done, stop it, or do not close.
+enum class RunningAnswer { Wait, Stop, Cancel };
+
+// What a person is asked before closing loses something. Both are there.
+struct CloseQuestions {
+    // About a document with unsaved changes.
+    std::function<CloseAnswer(DocumentSession&)> unsaved;
+    // About jobs that still run, by their titles; at least one.
+    std::function<RunningAnswer(const QStringList&)> running;
+};
 
 // Where no document is named, calls are about the current one. Results of jobs, saves and closing wait for
 // the end of an open EditSession.
@@ -60,11 +72,12 @@ class Workspace : public QObject {
     // is another picture than the one that was vectorized.
     void relinkPhoto(const QString& path);
 
-    // Closes after asking where changes would be lost and saving where the answer is so. Stops what runs on
-    // the document, exports excepted. `then` hears whether it was closed.
-    void close(DocumentSession* session, const AskToClose& ask, std::function<void(bool)> then = {});
-    // One after the other, until one is kept.
-    void closeAll(const AskToClose& ask, std::function<void(bool)> then);
+    // Closes after asking where running work or changes would be lost, and saving where the answer is so.
+    // Exports of the document go on. `then` hears whether it was closed. A later call takes the place of one
+    // that still waits (for a save, a gesture or running work), whose `then` hears false.
+    void close(DocumentSession* session, const CloseQuestions& ask, std::function<void(bool)> then = {});
+    // One after the other, until one is kept; before them, what is being exported is asked about.
+    void closeAll(const CloseQuestions& ask, std::function<void(bool)> then);
 
     // Needs a photo; does nothing while a vectorization of it is running. The result becomes one undoable
     // step. With `meanError` (levels of 255) the patches are those that it takes, and not the settings'.
@@ -75,7 +88,7 @@ class Workspace : public QObject {
     void buildDrafts(const VectorizeSettings& settings,
                      std::function<void(std::shared_ptr<const DraftLadder>)> then);
     // Saves a snapshot of a document with patches, after a save that is still running; `then` hears whether
-    // it has been written, after the message about it where it has not.
+    // it has been written, after the message about it where it has not, unless the document is closed first.
     void save(const QString& path, bool embedPhoto, std::function<void(bool)> then = {});
     void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void(bool)> then);
     void exportPicture(const ExportRequest& request);
@@ -115,6 +128,25 @@ class Workspace : public QObject {
         const DocumentSession* session;  // null for Open
     };
 
+    struct Closing {
+        DocumentSession* session;
+        CloseQuestions ask;
+        std::function<void(bool)> then;
+    };
+    using ClosingPtr = std::shared_ptr<const Closing>;
+
+    // workspace_closing.cpp
+    // Whether it is the latest wish for its document, which then is open.
+    bool stands(const ClosingPtr& closing) const { return mClosing.value(closing->session) == closing; }
+    void askAboutWork(const ClosingPtr& closing);
+    void askAboutChanges(const ClosingPtr& closing);
+    void finish(const ClosingPtr& closing, bool closed);
+    void closeNext(const CloseQuestions& ask, std::function<void(bool)> then);
+    // The jobs of these kinds; of this session, or of all where it is null.
+    QList<Job*> jobs(std::initializer_list<JobKind> kinds, const DocumentSession* session) const;
+    // Calls `then` once none of the jobs runs, not before control is back in the event loop.
+    void afterAll(const QList<Job*>& jobs, std::function<void()> then);
+
     DocumentSession* adopt(OpenedFile opened);
     void remove(DocumentSession* session);
     void applyVectorized(DocumentSession& session, uint64_t revision, Vectorized vectorized);
@@ -125,12 +157,16 @@ class Workspace : public QObject {
     Job* find(JobKind kind, const DocumentSession* session) const;
     void track(Job* job, const DocumentSession* session);
     void stopAll(JobKind kind, const DocumentSession* session);
+    // Stops the job at once; its result goes with it.
+    void drop(const Job* job);
     // Says the error, unless it is that the user stopped the job.
     void report(const Error& error);
 
     QList<DocumentSession*> mSessions;
     DocumentSession* mCurrent = nullptr;
     QList<RunningJob> mJobs;
+    QHash<DocumentSession*, ClosingPtr> mClosing;
+    uint64_t mClosingAll = 0;  // counts the calls of closeAll()
     QSet<QString> mOpening;
     size_t mHistoryLimit = History::kDefaultMemoryLimit;
 };

@@ -198,13 +198,12 @@ void Workspace::track(Job* job, const DocumentSession* session) {
 }
 
 void Workspace::stopAll(JobKind kind, const DocumentSession* session) {
-    const QList<RunningJob> jobs = mJobs;
-    for (const RunningJob& running : jobs) {
-        if (running.job->kind() != kind || running.session != session) continue;
-        mJobs.removeIf([&](const RunningJob& r) { return r.job == running.job; });
-        running.job->disconnect(this);
-        delete running.job;  // drops its result too
-    }
+    for (const Job* job : jobs({kind}, session)) drop(job);
+}
+
+void Workspace::drop(const Job* job) {
+    mJobs.removeIf([&](const RunningJob& running) { return running.job == job; });
+    delete job;
     emit jobChanged();
 }
 

@@ -127,7 +127,9 @@ class MainWindow : public QMainWindow {
     void exportAgain();
     void chooseAndRelink();
     void closeSession(DocumentSession* session);
-    CloseAnswer askToClose(DocumentSession& session);
+    CloseQuestions closeQuestions();
+    CloseAnswer askAboutChanges(DocumentSession& session);
+    RunningAnswer askAboutWork(const QStringList& titles);
     void fillRecentMenu();
 
     Settings mSettings;

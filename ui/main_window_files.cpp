@@ -9,6 +9,7 @@
 #include <QMenu>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QPushButton>
 
 #include "app/file_service.h"
 #include "app/selection_picture.h"
@@ -114,10 +115,30 @@ void MainWindow::copy() {
 }
 
 void MainWindow::closeSession(DocumentSession* session) {
-    if (session) mWorkspace.close(session, [this](DocumentSession& asked) { return askToClose(asked); });
+    if (session) mWorkspace.close(session, closeQuestions());
 }
 
-CloseAnswer MainWindow::askToClose(DocumentSession& session) {
+CloseQuestions MainWindow::closeQuestions() {
+    return {.unsaved = [this](DocumentSession& session) { return askAboutChanges(session); },
+            .running = [this](const QStringList& titles) { return askAboutWork(titles); }};
+}
+
+RunningAnswer MainWindow::askAboutWork(const QStringList& titles) {
+    QMessageBox box(QMessageBox::Question, tr("Still Running"),
+                    tr("This is still running: %1.").arg(titles.join(", ")), {}, this);
+    box.setInformativeText(tr("What is stopped is lost."));
+    auto* wait = box.addButton(tr("&Wait, Then Close"), QMessageBox::AcceptRole);
+    wait->setObjectName("wait");
+    auto* stop = box.addButton(tr("&Stop and Close"), QMessageBox::DestructiveRole);
+    stop->setObjectName("stop");
+    box.addButton(QMessageBox::Cancel);
+    box.setDefaultButton(wait);
+    box.exec();
+    if (box.clickedButton() == wait) return RunningAnswer::Wait;
+    return box.clickedButton() == stop ? RunningAnswer::Stop : RunningAnswer::Cancel;
+}
+
+CloseAnswer MainWindow::askAboutChanges(DocumentSession& session) {
     QMessageBox box(QMessageBox::Question, tr("Unsaved Changes"),
                     tr("“%1” has changes that are not saved.").arg(session.displayName()),
                     QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
@@ -140,18 +161,17 @@ CloseAnswer MainWindow::askToClose(DocumentSession& session) {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-    if (mClosing || mWorkspace.sessions().isEmpty()) {
+    if (mClosing || (mWorkspace.sessions().isEmpty() && !mWorkspace.currentJob())) {
         storeWindow();
         return event->accept();
     }
     event->ignore();
-    mWorkspace.closeAll([this](DocumentSession& asked) { return askToClose(asked); },
-                        [this](bool closed) {
-                            if (!closed) return;
-                            mClosing = true;
-                            // Not from here: a window that is being asked to close cannot be closed.
-                            QMetaObject::invokeMethod(this, &QWidget::close, Qt::QueuedConnection);
-                        });
+    mWorkspace.closeAll(closeQuestions(), [this](bool closed) {
+        if (!closed) return;
+        mClosing = true;
+        // Not from here: a window that is being asked to close cannot be closed.
+        QMetaObject::invokeMethod(this, &QWidget::close, Qt::QueuedConnection);
+    });
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {

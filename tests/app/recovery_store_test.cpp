@@ -136,6 +136,10 @@ class AutosaveTest : public RecoveryStoreTest {
         const auto edit = [value](PatchMesh& mesh) { return testing::paint(mesh, PatchId(3), value); };
         ASSERT_TRUE(applyEdit(*workspace->session(), "Paint", edit));
     }
+    static CloseQuestions discarding() {
+        return {[](auto&) { return CloseAnswer{CloseAnswer::Kind::Discard}; },
+                [](auto&) { return RunningAnswer::Stop; }};
+    }
     // Ends this instance as a crash would, as far as the folder is concerned, and begins another.
     std::vector<std::shared_ptr<RecoverySlot>> crash() {
         autosave.reset();
@@ -181,7 +185,7 @@ TEST_F(AutosaveTest, SavedAndClosedDocumentsAreForgotten) {
     openAndPaint(.7f);
     autosave->saveNow();
     ASSERT_TRUE(idle());
-    workspace->close(workspace->session(), [](auto&) { return CloseAnswer{CloseAnswer::Kind::Discard}; });
+    workspace->close(workspace->session(), discarding());
     EXPECT_TRUE(crash().empty());
     openAndPaint(.8f);
     autosave->saveNow();
@@ -212,6 +216,20 @@ TEST_F(AutosaveTest, WaitsForTheEndOfAGestureAndWritesOnlyChanges) {
     const auto left = crash();
     ASSERT_EQ(left.size(), 1u);
     EXPECT_EQ(bytesIn(*left[0]), bytes);
+}
+
+// The autosave waits behind the closing for the end of the same gesture.
+TEST_F(AutosaveTest, ADocumentThatIsClosedBeforeItsTurnIsNotWritten) {
+    openAndPaint(.5f);
+    QPointer<DocumentSession> session = workspace->session();
+    {
+        EditSession gesture(*session, "Paint");
+        workspace->close(session, discarding());
+        autosave->saveNow();
+    }
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !session; }, kWaitMs));
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(crash().empty());
 }
 
 TEST_F(AutosaveTest, TheTimerDoesIt) {

@@ -53,16 +53,23 @@ class WorkspaceTest : public testing::TemporaryFolderTest {
         const auto edit = [](PatchMesh& mesh) { return testing::paint(mesh, PatchId(3), .5f); };
         ASSERT_TRUE(applyEdit(*workspace.session(), "Paint", edit));
     }
-    AskToClose answering(CloseAnswer answer) {
-        return [this, answer](DocumentSession&) {
-            ++asked;
-            return answer;
-        };
+    CloseQuestions answering(CloseAnswer answer, RunningAnswer aboutWork = RunningAnswer::Stop) {
+        return {.unsaved =
+                    [this, answer](DocumentSession&) {
+                        ++asked;
+                        return answer;
+                    },
+                .running =
+                    [this, aboutWork](const QStringList& titles) {
+                        askedAbout.append(titles);
+                        return aboutWork;
+                    }};
     }
 
     Workspace workspace;
     Message said;
-    int asked = 0;
+    int asked = 0;           // about unsaved changes
+    QStringList askedAbout;  // the work that would have been lost
 };
 
 TEST_F(WorkspaceTest, DocumentsAreOpenSideBySide) {
@@ -142,6 +149,98 @@ TEST_F(WorkspaceTest, ClosingAllEndsWithASaveThatFails) {
     EXPECT_EQ(workspace.sessions().size(), 2);
     EXPECT_TRUE(workspace.session()->modified());
     EXPECT_EQ(asked, 1);
+}
+
+TEST_F(WorkspaceTest, ClosingTwiceDuringASaveClosesOnce) {
+    open(documentFile("a.tessera"));
+    open(documentFile("b.tessera"));
+    open(documentFile("c.tessera"));
+    workspace.setCurrent(workspace.sessions()[1]);
+    const QPointer<DocumentSession> b = workspace.session();
+    change();
+    workspace.save(path("b.tessera"), true);
+    std::vector<int> heard;
+    workspace.close(b, answering({}), [&](bool closed) { heard.push_back(closed ? 1 : -1); });
+    EXPECT_EQ(heard, std::vector<int>());
+    workspace.close(b, answering({}), [&](bool closed) { heard.push_back(closed ? 2 : -2); });
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !b; }, kWaitMs));
+    EXPECT_EQ(heard, (std::vector{-1, 2}));
+    EXPECT_EQ(asked, 0) << "it was saved";
+    ASSERT_EQ(workspace.sessions().size(), 2);
+    EXPECT_EQ(workspace.sessions()[0]->displayName(), "a.tessera");
+    EXPECT_EQ(workspace.sessions()[1]->displayName(), "c.tessera");
+}
+
+TEST_F(WorkspaceTest, ClosingTwiceDuringASaveThatFailsAsksOnce) {
+    open(documentFile("a.tessera"));
+    change();
+    workspace.save(path("no/such/folder/a.tessera"), true);
+    std::vector<bool> heard;
+    for (int i = 0; i < 2; ++i)
+        workspace.closeAll(answering({CloseAnswer::Kind::Cancel}), [&](bool all) { heard.push_back(all); });
+    ASSERT_TRUE(QTest::qWaitFor([&] { return heard.size() == 2; }, kWaitMs));
+    EXPECT_EQ(asked, 1);
+    EXPECT_EQ(heard, (std::vector{false, false}));
+    EXPECT_EQ(workspace.sessions().size(), 1);
+}
+
+TEST_F(WorkspaceTest, EndingAsksAboutExportsThatRun) {
+    open(documentFile("a.tessera"));
+    const auto startExport = [&] {
+        workspace.exportPicture({.path = path("a.png"), .scale = 60, .options = {}});
+        ASSERT_TRUE(workspace.running(JobKind::Export));
+    };
+    startExport();
+    std::optional<bool> closed;
+    const auto hear = [&](bool all) { closed = all; };
+    workspace.closeAll(answering({}, RunningAnswer::Cancel), hear);
+    EXPECT_EQ(askedAbout, QStringList("Exporting a.png"));
+    EXPECT_EQ(closed, false);
+    EXPECT_EQ(workspace.sessions().size(), 1);
+    ASSERT_TRUE(workspace.running(JobKind::Export));
+    workspace.closeAll(answering({}, RunningAnswer::Stop), hear);
+    EXPECT_EQ(closed, true);
+    EXPECT_TRUE(workspace.sessions().isEmpty());
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(QFile::exists(path("a.png")));
+    open(path("a.tessera"));
+    startExport();
+    closed.reset();
+    workspace.closeAll(answering({}, RunningAnswer::Wait), hear);
+    EXPECT_EQ(closed, std::nullopt);
+    ASSERT_TRUE(QTest::qWaitFor([&] { return closed.has_value(); }, kWaitMs));
+    EXPECT_TRUE(*closed);
+    EXPECT_TRUE(QFile::exists(path("a.png"))) << said.text.toStdString();
+    EXPECT_EQ(askedAbout.size(), 3);
+}
+
+TEST_F(WorkspaceTest, ClosingATabLeavesItsExportAlone) {
+    open(documentFile("a.tessera"));
+    workspace.exportPicture({.path = path("a.png"), .scale = 30, .options = {}});
+    workspace.close(workspace.session(), answering({}));
+    EXPECT_TRUE(workspace.sessions().isEmpty());
+    EXPECT_EQ(askedAbout, QStringList());
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(QFile::exists(path("a.png")));
+}
+
+TEST_F(WorkspaceTest, ClosingAsksAboutAVectorizationThatRuns) {
+    ASSERT_TRUE(stripes(160, 120).save(path("a.png")));
+    open(path("a.png"));
+    VectorizeSettings settings;
+    settings.patches = 40;
+    workspace.vectorize(settings);
+    DocumentSession* const session = workspace.session();
+    workspace.close(session, answering({}, RunningAnswer::Cancel));
+    EXPECT_EQ(askedAbout, QStringList("Vectorizing a.png"));
+    EXPECT_TRUE(workspace.running(JobKind::Vectorize));
+    std::optional<bool> closed;
+    workspace.close(session, answering({CloseAnswer::Kind::Cancel}, RunningAnswer::Wait),
+                    [&](bool done) { closed = done; });
+    ASSERT_TRUE(QTest::qWaitFor([&] { return closed.has_value(); }, kWaitMs));
+    EXPECT_FALSE(*closed);
+    EXPECT_TRUE(session->hasMesh());
+    EXPECT_EQ(asked, 1) << "what was waited for is not saved";
 }
 
 TEST_F(WorkspaceTest, ASaveWaitsForTheEndOfAGesture) {
@@ -316,10 +415,19 @@ TEST_F(ManyElements, StayAsTheyWereWhereTheJobIsStopped) {
 
 TEST_F(ManyElements, DoNotKeepADocumentFromBeingClosed) {
     workspace.edit(splitPatches(*session));
-    workspace.close(session, answering({.kind = CloseAnswer::Kind::Discard}));
+    workspace.close(session, answering({.kind = CloseAnswer::Kind::Discard}, RunningAnswer::Stop));
     EXPECT_EQ(workspace.session(), nullptr);
     EXPECT_EQ(asked, 0) << "nothing has been changed";
+    EXPECT_EQ(askedAbout, QStringList("Split Patch"));
     EXPECT_TRUE(idle());
+}
+
+TEST_F(ManyElements, GoOnWhereTheDocumentIsKept) {
+    workspace.edit(splitPatches(*session));
+    workspace.close(session, answering({}, RunningAnswer::Cancel));
+    EXPECT_TRUE(workspace.running(JobKind::Edit));
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(session->history().undoText(), "Split Patch");
 }
 
 TEST_F(ManyElements, AFewAreEditedAtOnceAndFailuresAreSaid) {

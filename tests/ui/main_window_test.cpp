@@ -464,6 +464,23 @@ TEST_F(MainWindowTest, AsksBeforeChangesAreLost) {
     EXPECT_TRUE(QTest::qWaitFor([&] { return !window->isVisible(); }, kWaitMs));
 }
 
+TEST_F(MainWindowTest, AsksBeforeAVectorizationIsLost) {
+    ASSERT_TRUE(disk(1200, 900).save(photo));
+    openPhoto();
+    QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+    answer(QMessageBox::Cancel);
+    EXPECT_FALSE(window->close());
+    EXPECT_TRUE(workspace().running(JobKind::Vectorize));
+    QTimer::singleShot(100, window.get(), [] {
+        auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+        ASSERT_NE(box, nullptr);
+        EXPECT_TRUE(box->text().contains("Vectorizing disk.png")) << box->text().toStdString();
+        QTest::mouseClick(box->findChild<QPushButton*>("stop"), Qt::LeftButton);
+    });
+    window->close();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return !window->isVisible(); }, kWaitMs));
+}
+
 TEST_F(MainWindowTest, StaysOpenWhereASaveAtTheEndFails) {
     openPhoto();
     vectorize();
