@@ -10,6 +10,16 @@
 
 namespace tessera {
 
+namespace {
+
+// The one file that a path leads to, whether it is there yet or not.
+QString fileAt(const QString& path) {
+    const QFileInfo info(path);
+    return info.exists() ? info.canonicalFilePath() : info.absoluteFilePath();
+}
+
+}  // namespace
+
 Workspace::Workspace(QObject* parent) : QObject(parent) {}
 
 Workspace::~Workspace() {
@@ -34,10 +44,8 @@ void Workspace::moveSession(int from, int to) {
 }
 
 void Workspace::open(const QString& path) {
+    if (DocumentSession* session = sessionAt(path)) return setCurrent(session);
     const QString absolute = QFileInfo(path).absoluteFilePath();
-    for (DocumentSession* session : std::as_const(mSessions))
-        if (!session->path().isEmpty() && QFileInfo(session->path()).absoluteFilePath() == absolute)
-            return setCurrent(session);
     if (mOpening.contains(absolute)) return;
     mOpening.insert(absolute);
     const auto read = [path](Progress& progress) { return openFile(path, progress); };
@@ -49,6 +57,17 @@ void Workspace::open(const QString& path) {
                                 emit fileUsed(path);
                             });
     track(job, nullptr);
+}
+
+DocumentSession* Workspace::sessionAt(const QString& path) const {
+    const QString file = fileAt(path);
+    for (DocumentSession* session : mSessions) {
+        if (!session->path().isEmpty() && fileAt(session->path()) == file) return session;
+        for (const RunningJob& running : mJobs)
+            if (running.session == session && !running.path.isEmpty() && fileAt(running.path) == file)
+                return session;
+    }
+    return nullptr;
 }
 
 void Workspace::paste(const QImage& picture) {

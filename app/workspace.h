@@ -89,9 +89,14 @@ class Workspace : public QObject {
                      std::function<void(std::shared_ptr<const DraftLadder>)> then);
     // Saves a snapshot of a document with patches, after a save that is still running; `then` hears whether
     // it has been written, after the message about it where it has not, unless the document is closed first.
+    // Fails where another open document is the one in that file.
     void save(const QString& path, bool embedPhoto, std::function<void(bool)> then = {});
     void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void(bool)> then);
+    // Fails at once where no format is known for the path.
     void exportPicture(const ExportRequest& request);
+    // The last export of the current document, with what it is now.
+    void exportAgain();
+    bool canExportAgain() const;
     // Makes an edit of the current document one step: at once where it is small, else by a job, during which
     // an EditSession is open. Says what could not be edited, or why nothing could.
     void edit(const Result<ElementEdit>& edit);
@@ -126,6 +131,7 @@ class Workspace : public QObject {
     struct RunningJob {
         Job* job;
         const DocumentSession* session;  // null for Open
+        QString path;                    // of a save: where to
     };
 
     struct Closing {
@@ -155,7 +161,9 @@ class Workspace : public QObject {
     void startSave(DocumentSession& session, const QString& path, bool embedPhoto,
                    std::function<void(bool)> then);
     Job* find(JobKind kind, const DocumentSession* session) const;
-    void track(Job* job, const DocumentSession* session);
+    // The document that is in this file, or is being saved there; null for none.
+    DocumentSession* sessionAt(const QString& path) const;
+    void track(Job* job, const DocumentSession* session, const QString& path = {});
     void stopAll(JobKind kind, const DocumentSession* session);
     // Stops the job at once; its result goes with it.
     void drop(const Job* job);
@@ -167,6 +175,7 @@ class Workspace : public QObject {
     QList<RunningJob> mJobs;
     QHash<DocumentSession*, ClosingPtr> mClosing;
     uint64_t mClosingAll = 0;  // counts the calls of closeAll()
+    QHash<const DocumentSession*, ExportRequest> mLastExports;
     QSet<QString> mOpening;
     size_t mHistoryLimit = History::kDefaultMemoryLimit;
 };

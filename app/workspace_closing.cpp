@@ -90,6 +90,7 @@ void Workspace::closeNext(const CloseQuestions& ask, std::function<void(bool)> t
 
 void Workspace::remove(DocumentSession* session) {
     mClosing.remove(session);
+    mLastExports.remove(session);
     session->retire();
     for (const JobKind kind : {JobKind::Edit, JobKind::Vectorize, JobKind::Relink, JobKind::Drafts})
         stopAll(kind, session);

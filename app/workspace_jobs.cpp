@@ -8,6 +8,7 @@
 #include "app/jobs/element_edit_job.h"
 #include "app/jobs/save_job.h"
 #include "app/workspace.h"
+#include "core/image/image_io.h"
 
 namespace tessera {
 
@@ -93,6 +94,13 @@ void Workspace::save(DocumentSession* session, const QString& path, bool embedPh
                      std::function<void(bool)> then) {
     if (!session->hasMesh()) return;
     session->whenIdle([this, session, path, embedPhoto, then = std::move(then)] {
+        if (const DocumentSession* other = sessionAt(path); other && other != session) {
+            emit said({.kind = Message::Kind::Error,
+                       .text = tr("“%1” is open in another tab; close it there, or save under another name.")
+                                   .arg(QFileInfo(path).fileName())});
+            if (then) then(false);
+            return;
+        }
         Job* const job = find(JobKind::Save, session);
         if (!job) return startSave(*session, path, embedPhoto, then);
         // The one that runs may hold an older state: look again when it has ended.
@@ -128,11 +136,22 @@ void Workspace::startSave(DocumentSession& session, const QString& path, bool em
                                 }
                                 if (then) then(true);
                             });
-    track(job, &session);
+    track(job, &session, path);
+}
+
+bool Workspace::canExportAgain() const {
+    return mCurrent && mCurrent->hasMesh() && mLastExports.contains(mCurrent) && !running(JobKind::Export);
+}
+
+void Workspace::exportAgain() {
+    if (canExportAgain()) exportPicture(mLastExports.value(mCurrent));
 }
 
 void Workspace::exportPicture(const ExportRequest& request) {
     if (!mCurrent || !mCurrent->hasMesh() || running(JobKind::Export)) return;
+    if (const auto format = pictureFormatFor(request.path.toStdString()); !format)
+        return report(format.error());
+    mLastExports[mCurrent] = request;
     const QPointer<DocumentSession> target = mCurrent;
     mCurrent->whenIdle([this, target, request] {
         Job* job = startExportJob(
@@ -187,8 +206,8 @@ void Workspace::cancel() {
     emit jobChanged();
 }
 
-void Workspace::track(Job* job, const DocumentSession* session) {
-    mJobs.append({job, session});
+void Workspace::track(Job* job, const DocumentSession* session, const QString& path) {
+    mJobs.append({job, session, path});
     connect(job, &Job::progressed, this, &Workspace::jobChanged);
     connect(job, &Job::finished, this, [this, job] {
         mJobs.removeIf([&](const RunningJob& running) { return running.job == job; });

@@ -86,7 +86,7 @@ void MainWindow::connectActions() {
     on(ActionId::Save, [this] { save(); });
     on(ActionId::SaveAs, [this] { chooseAndSave(); });
     on(ActionId::Export, [this] { chooseAndExport(); });
-    on(ActionId::ExportAgain, [this] { exportAgain(); });
+    on(ActionId::ExportAgain, [this] { mWorkspace.exportAgain(); });
     on(ActionId::Relink, [this] { chooseAndRelink(); });
     on(ActionId::Preferences, [this] { showPreferences(); });
     on(ActionId::Quit, [this] { close(); });
@@ -321,7 +321,7 @@ void MainWindow::updateActions() {
     };
     enable({ActionId::Save, ActionId::SaveAs}, hasMesh && !mWorkspace.running(JobKind::Save));
     enable({ActionId::Export}, hasMesh && !mWorkspace.running(JobKind::Export));
-    enable({ActionId::ExportAgain}, hasMesh && mLastExport && !mWorkspace.running(JobKind::Export));
+    enable({ActionId::ExportAgain}, mWorkspace.canExportAgain());
     enable({ActionId::Vectorize}, mWorkspace.canVectorize());
     enable({ActionId::Cancel}, mWorkspace.currentJob());
     enable({ActionId::Close, ActionId::ZoomIn, ActionId::ZoomOut, ActionId::ZoomFit, ActionId::Zoom100,

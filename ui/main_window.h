@@ -124,7 +124,6 @@ class MainWindow : public QMainWindow {
     // A .tessera path; empty where the user chooses none.
     QString askForPath(const DocumentSession& session);
     void chooseAndExport();
-    void exportAgain();
     void chooseAndRelink();
     void closeSession(DocumentSession* session);
     CloseQuestions closeQuestions();
@@ -157,7 +156,6 @@ class MainWindow : public QMainWindow {
     QList<QDockWidget*> mDocks;
     QList<QDockWidget*> mHiddenDocks;  // by Hide Panels, to be shown again
     QMenu* mRecent = nullptr;
-    std::optional<ExportRequest> mLastExport;
     bool mVectorizeWhenOpen = false;
     bool mMentionRecovery = false;
     std::vector<std::shared_ptr<RecoverySlot>> mRecoverable;  // whole documents of a run before this one

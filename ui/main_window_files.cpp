@@ -14,6 +14,7 @@
 #include "app/file_service.h"
 #include "app/selection_picture.h"
 #include "ui/dialogs/export_dialog.h"
+#include "ui/dialogs/save_path.h"
 #include "ui/main_window.h"
 #include "ui/message_bar.h"
 #include "ui/start_page.h"
@@ -28,10 +29,6 @@ QStringList droppedFiles(const QMimeData* data) {
     for (const QUrl& url : data->urls())
         if (url.isLocalFile()) files.append(url.toLocalFile());
     return files;
-}
-
-QString withSuffix(const QString& path, const QString& suffix) {
-    return QFileInfo(path).suffix().isEmpty() ? path + '.' + suffix : path;
 }
 
 }  // namespace
@@ -70,9 +67,8 @@ void MainWindow::chooseAndSave() {
 }
 
 QString MainWindow::askForPath(const DocumentSession& session) {
-    const QString path = QFileDialog::getSaveFileName(this, tr("Save As"), session.suggestedPath("tessera"),
-                                                      tr("Tessera documents (*.tessera)"));
-    return path.isEmpty() ? path : withSuffix(path, "tessera");
+    return askForSavePath(this, tr("Save As"), session.suggestedPath("tessera"),
+                          tr("Tessera documents (*.tessera)"));
 }
 
 void MainWindow::chooseAndExport() {
@@ -82,16 +78,9 @@ void MainWindow::chooseAndExport() {
                         mSettings, this);
     if (dialog.exec() != QDialog::Accepted) return;
     ExportRequest request = dialog.request();
-    const QString suggested = session->suggestedPath(dialog.suffix());
-    const QString path = QFileDialog::getSaveFileName(this, tr("Export Picture"), suggested, dialog.filter());
-    if (path.isEmpty()) return;
-    request.path = withSuffix(path, dialog.suffix());
-    mLastExport = request;
-    mWorkspace.exportPicture(request);
-}
-
-void MainWindow::exportAgain() {
-    if (mLastExport) mWorkspace.exportPicture(*mLastExport);
+    request.path =
+        askForSavePath(this, tr("Export Picture"), session->suggestedPath(dialog.suffix()), dialog.filter());
+    if (!request.path.isEmpty()) mWorkspace.exportPicture(request);
 }
 
 void MainWindow::chooseAndRelink() {

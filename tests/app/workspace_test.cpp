@@ -259,6 +259,38 @@ TEST_F(WorkspaceTest, ASaveWaitsForTheEndOfAGesture) {
     ASSERT_TRUE(idle());
 }
 
+TEST_F(WorkspaceTest, AFileHoldsOneOfTheOpenDocuments) {
+    const QString a = documentFile("a.tessera", 40);
+    open(a);
+    open(documentFile("b.tessera", 50));
+    std::optional<bool> written;
+    const auto hear = [&](bool done) { written = done; };
+    ASSERT_TRUE(QFile::link(a, path("link.tessera")));
+    for (const QString& file : {a, path("link.tessera"), path("./a.tessera")}) {
+        written.reset();
+        workspace.save(file, true, hear);
+        EXPECT_EQ(written, false) << file.toStdString();
+        EXPECT_TRUE(said.text.contains("another tab")) << said.text.toStdString();
+    }
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(loadDocument(at("a.tessera"))->mesh.width(), 40);
+    // A file is taken from the moment when a save to it begins.
+    workspace.save(path("c.tessera"), true);
+    workspace.setCurrent(workspace.sessions()[0]);
+    workspace.save(path("c.tessera"), true, hear);
+    EXPECT_EQ(written, false);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(loadDocument(at("c.tessera"))->mesh.width(), 50);
+}
+
+TEST_F(WorkspaceTest, AnExportWithoutAFormatDoesNotBegin) {
+    open(documentFile("a.tessera"));
+    workspace.exportPicture({.path = path("photo.v2"), .options = {}});
+    EXPECT_EQ(workspace.currentJob(), nullptr);
+    EXPECT_EQ(said.kind, Message::Kind::Error);
+    EXPECT_FALSE(workspace.canExportAgain());
+}
+
 TEST_F(WorkspaceTest, JobsBelongToTheirDocument) {
     ASSERT_TRUE(stripes(160, 120).save(path("a.png")));
     ASSERT_TRUE(stripes(600, 400).save(path("b.png")));

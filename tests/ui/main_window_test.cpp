@@ -2,12 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <QComboBox>
+#include <QDialogButtonBox>
 #include <QDir>
 #include <QDoubleSpinBox>
 #include <QFile>
+#include <QFileDialog>
 #include <QLabel>
+#include <QLineEdit>
 #include <QSlider>
 #include <QSpinBox>
+#include <QTabBar>
 
 #include "app/recovery_store.h"
 #include "core/export/rasterize.h"
@@ -387,6 +391,69 @@ TEST_F(MainWindowTest, SavesAndOpensAgain) {
     EXPECT_TRUE(session()->photo().image) << "the photo is kept in the file";
     ASSERT_TRUE(settled());
     EXPECT_LT(difference(grab(), before), .3) << "the file holds colours to a tenth of a level";
+}
+
+// Types a name into a file dialog.
+void choose(QFileDialog& dialog, const QString& path) {
+    auto* name = dialog.findChild<QLineEdit*>("fileNameEdit");
+    ASSERT_NE(name, nullptr);
+    name->setText(path);  // typing would open the list of completions
+    QTest::mouseClick(dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Save), Qt::LeftButton);
+}
+
+// A file that only the name with its suffix leads to is asked about like any other.
+TEST_F(MainWindowTest, NamesWithoutTheirSuffixReplaceNothingUnasked) {
+    openPhoto();
+    vectorize();
+    const QString taken = folder.filePath("taken.tessera");
+    {
+        QFile file(taken);
+        ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+        file.write("precious");
+    }
+    bool asked = false;
+    whenAsked<QFileDialog>([&](QFileDialog& dialog) {
+        whenAsked<QMessageBox>([&](QMessageBox& box) {
+            asked = true;
+            EXPECT_TRUE(box.text().contains("taken.tessera")) << box.text().toStdString();
+            whenAsked<QFileDialog>([&](QFileDialog& again) { QTest::keyClick(&again, Qt::Key_Escape); });
+            QTest::mouseClick(box.button(QMessageBox::No), Qt::LeftButton);
+        });
+        choose(dialog, folder.filePath("taken"));
+    });
+    action(ActionId::SaveAs)->trigger();
+    EXPECT_TRUE(asked);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(QFileInfo(taken).size(), 8);
+    EXPECT_TRUE(session()->modified());
+    whenAsked<QFileDialog>([&](QFileDialog& dialog) { choose(dialog, folder.filePath("disk.v2")); });
+    action(ActionId::SaveAs)->trigger();
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(QFile::exists(folder.filePath("disk.v2.tessera"))) << "v2 is no suffix of ours";
+}
+
+TEST_F(MainWindowTest, ExportAgainIsAboutTheDocumentInFront) {
+    const QString second = folder.filePath("second.png"), out = folder.filePath("out.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    openPhoto();
+    vectorize();
+    EXPECT_FALSE(action(ActionId::ExportAgain)->isEnabled());
+    workspace().exportPicture({.path = out, .options = {}});
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(action(ActionId::ExportAgain)->isEnabled());
+    const QImage first(out);
+    window->open(second);
+    ASSERT_TRUE(idle());
+    vectorize();
+    EXPECT_FALSE(action(ActionId::ExportAgain)->isEnabled()) << "it has never been exported";
+    action(ActionId::ExportAgain)->trigger();
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(QImage(out), first);
+    QTest::mouseClick(&window->tabs(), Qt::LeftButton, {}, window->tabs().tabRect(0).center());
+    ASSERT_TRUE(QFile::remove(out));
+    action(ActionId::ExportAgain)->trigger();
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(QImage(out), first);
 }
 
 TEST_F(MainWindowTest, AFailedSaveSaysSoAndKeepsTheChanges) {

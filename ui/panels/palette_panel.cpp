@@ -15,6 +15,7 @@
 #include "app/settings.h"
 #include "app/tools/tool_manager.h"
 #include "ui/conversions.h"
+#include "ui/dialogs/save_path.h"
 #include "ui/panels/colour_popup.h"
 #include "ui/panels/panel_parts.h"
 #include "ui/panels/swatch_button.h"
@@ -315,11 +316,9 @@ void PalettePanel::askImport() {
 }
 
 void PalettePanel::askExport() {
-    QString path = QFileDialog::getSaveFileName(
-        this, tr("Export Swatches"), Settings().folder() + "/swatches.gpl", tr("GIMP palettes (*.gpl)"));
-    if (path.isEmpty()) return;
-    if (!path.endsWith(".gpl", Qt::CaseInsensitive)) path += ".gpl";
-    exportTo(path);
+    const QString path = askForSavePath(this, tr("Export Swatches"), Settings().folder() + "/swatches.gpl",
+                                        tr("GIMP palettes (*.gpl)"));
+    if (!path.isEmpty()) exportTo(path);
 }
 
 }  // namespace tessera
