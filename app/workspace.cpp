@@ -139,10 +139,13 @@ void Workspace::applyRelinked(DocumentSession& session, OpenedFile opened, const
     };
     const std::string& known = session.document().source.sha256;
     if (known.empty() || known == opened.document.source.sha256) return apply();
-    emit said({.kind = Message::Kind::Info,
-               .text = tr("“%1” is not the picture that the document was made from.").arg(name),
-               .actionText = tr("Use It Anyway"),
-               .action = apply});
+    emit said(
+        {.kind = Message::Kind::Info,
+         .text = tr("“%1” is not the picture that “%2” was made from.").arg(name, session.displayName()),
+         .actionText = tr("Use It Anyway"),
+         .action = apply,
+         .keep = true,
+         .about = &session});
 }
 
 void Workspace::setHistoryLimit(size_t bytes) {

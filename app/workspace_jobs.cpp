@@ -77,9 +77,12 @@ void Workspace::applyVectorized(DocumentSession& session, uint64_t revision, Vec
     };
     if (session.revision() != revision) {
         emit said({.kind = Message::Kind::Info,
-                   .text = tr("The document has changed since this vectorization was started."),
+                   .text = tr("“%1” has changed since this vectorization of it was started.")
+                               .arg(session.displayName()),
                    .actionText = tr("Use It Anyway"),
-                   .action = apply});
+                   .action = apply,
+                   .keep = true,
+                   .about = &session});
         return;
     }
     apply();

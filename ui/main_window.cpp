@@ -149,6 +149,7 @@ void MainWindow::connectWorkspace() {
     connect(&mWorkspace, &Workspace::sessionAdded, this,
             [this](DocumentSession* session) { welcome(*session); });
     connect(&mWorkspace, &Workspace::said, mMessages, &MessageBar::show);
+    connect(&mWorkspace, &Workspace::sessionClosed, mMessages, &MessageBar::forget);
     connect(&mWorkspace, &Workspace::fileUsed, this, [this](const QString& path) {
         mSettings.addRecentFile(path);
         mSettings.setFolder(QFileInfo(path).absolutePath());
@@ -237,7 +238,7 @@ void MainWindow::connectPanels() {
 
 void MainWindow::adoptSession() {
     DocumentSession* session = mWorkspace.session();
-    mMessages->hide();
+    mMessages->setDocument(session);
     for (const ActionId id : {ActionId::ShowOriginal, ActionId::ShowHeatMap})
         (*mActions)[id]->setChecked(false);
     mTools.setSession(session);
@@ -382,7 +383,7 @@ void MainWindow::updateTitle() {
 }
 
 void MainWindow::startVectorize() {
-    mMessages->hide();
+    mMessages->clear();
     mCanvas->setFocus();
     mWorkspace.vectorize(mPanel->settings(mWorkspace.session()), mPanel->meanError());
 }
@@ -390,7 +391,7 @@ void MainWindow::startVectorize() {
 void MainWindow::showDraft() {
     const auto& draft = mDrafts.mesh();
     mCanvas->setDraft(draft);
-    if (!draft) mMessages->hide();
+    if (!draft) mMessages->clear();
     mPanel->showDraft(draft ? std::optional(draft->patchCount()) : std::nullopt);
 }
 
@@ -512,7 +513,8 @@ void MainWindow::mentionWhenOpen() {
     if (mWorkspace.running(JobKind::Open) || !std::exchange(mMentionRecovery, false)) return;
     mMessages->show({.text = tr("Tessera ended before some changes were saved. They were autosaved."),
                      .actionText = tr("Recover…"),
-                     .action = [this] { askWhatToRecover(); }});
+                     .action = [this] { askWhatToRecover(); },
+                     .keep = true});
 }
 
 void MainWindow::showAbout() {

@@ -12,6 +12,7 @@
 #include <QSlider>
 #include <QSpinBox>
 #include <QTabBar>
+#include <QToolButton>
 
 #include "app/recovery_store.h"
 #include "core/export/rasterize.h"
@@ -494,6 +495,50 @@ TEST_F(MainWindowTest, AMessageLeavesThePictureWhereItIs) {
     EXPECT_EQ(canvas().geometry(), before);
     EXPECT_EQ(canvas().view().origin(), origin);
     EXPECT_TRUE(window->messages().geometry().intersects(before));
+}
+
+// What a vectorization has found is thrown away by the person only.
+TEST_F(MainWindowTest, AQuestionWaitsUntilItIsAnswered) {
+    ASSERT_TRUE(disk(600, 450).save(photo));
+    openPhoto();
+    vectorize();
+    const uint64_t first = session()->revision();
+    QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+    ASSERT_TRUE(workspace().running(JobKind::Vectorize));
+    QTest::keyClick(&canvas(), Qt::Key_Z, Qt::ControlModifier);
+    ASSERT_NE(session()->revision(), first);
+    ASSERT_TRUE(idle());
+    ASSERT_FALSE(session()->hasMesh());
+    MessageBar& bar = window->messages();
+    const QString question = bar.text();
+    EXPECT_TRUE(question.contains("disk.png")) << question.toStdString();
+    bar.show({.text = "Something else."});
+    EXPECT_EQ(bar.text(), "Something else.");
+    auto* close = bar.findChild<QToolButton*>();
+    QTest::mouseClick(close, Qt::LeftButton);
+    EXPECT_EQ(bar.text(), question);
+    const QString second = folder.filePath("second.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    window->open(second);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(bar.text(), "") << "it is about the other one";
+    vectorize();
+    QTest::mouseClick(&window->tabs(), Qt::LeftButton, {}, window->tabs().tabRect(0).center());
+    EXPECT_EQ(bar.text(), question);
+    QTest::mouseClick(bar.findChild<QPushButton*>(), Qt::LeftButton);
+    EXPECT_TRUE(session()->hasMesh());
+    EXPECT_EQ(bar.text(), "");
+}
+
+TEST_F(MainWindowTest, QuestionsEndWithTheirDocument) {
+    openPhoto();
+    MessageBar& bar = window->messages();
+    bar.show({.text = "First?", .actionText = "Yes", .action = [] {}, .keep = true, .about = session()});
+    bar.show({.text = "Second?", .actionText = "Yes", .action = [] {}, .keep = true});
+    EXPECT_EQ(bar.text(), "First?");
+    QTest::keyClick(&canvas(), Qt::Key_W, Qt::ControlModifier);
+    EXPECT_EQ(session(), nullptr);
+    EXPECT_EQ(bar.text(), "Second?");
 }
 
 TEST_F(MainWindowTest, OpensWhatIsDropped) {
