@@ -88,7 +88,7 @@ void Workspace::openRecovered(const QString& dataPath, const QString& path, cons
         startOpenJob(this, name, read, [=, this, adopted = std::move(adopted)](Result<OpenedFile> opened) {
             if (!opened) return report(opened.error());
             opened->path = path;
-            opened->photoPath = photoPath;
+            opened->photo.path = photoPath;
             DocumentSession* session = adopt(std::move(*opened));
             session->markUnsaved();
             adopted(*session);
@@ -98,7 +98,7 @@ void Workspace::openRecovered(const QString& dataPath, const QString& path, cons
 
 DocumentSession* Workspace::adopt(OpenedFile opened) {
     auto* session = new DocumentSession(std::move(opened.document), std::move(opened.photo),
-                                        std::move(opened.path), std::move(opened.photoPath), this);
+                                        std::move(opened.path), this);
     session->history().setMemoryLimit(mHistoryLimit);
     mSessions.append(session);
     setCurrent(session);
@@ -134,8 +134,8 @@ void Workspace::applyRelinked(DocumentSession& session, OpenedFile opened, const
                           .arg(session.width())
                           .arg(session.height()));
     const QPointer<DocumentSession> target = &session;
-    const auto apply = [target, photo = opened.photo, path] {
-        if (target) target->whenIdle([target, photo, path] { target->setPhoto(photo, path); });
+    const auto apply = [target, photo = opened.photo, source = opened.document.source] {
+        if (target) target->whenIdle([target, photo, source] { target->relinkPhoto(photo, source); });
     };
     const std::string& known = session.document().source.sha256;
     if (known.empty() || known == opened.document.source.sha256) return apply();

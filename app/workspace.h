@@ -68,8 +68,8 @@ class Workspace : public QObject {
     // as modified. `adopted` gets the session.
     void openRecovered(const QString& dataPath, const QString& path, const QString& photoPath,
                        std::function<void(DocumentSession&)> adopted);
-    // Makes the picture in a file the photo of the document. Fails where it has another size; asks where it
-    // is another picture than the one that was vectorized.
+    // Makes the picture in a file the photo of the document, as a step. Fails where it has another size; asks
+    // where it is another picture than the document says that it is from.
     void relinkPhoto(const QString& path);
 
     // Closes after asking where running work or changes would be lost, and saving where the answer is so.
@@ -89,7 +89,8 @@ class Workspace : public QObject {
                      std::function<void(std::shared_ptr<const DraftLadder>)> then);
     // Saves a snapshot of a document with patches, after a save that is still running; `then` hears whether
     // it has been written, after the message about it where it has not, unless the document is closed first.
-    // Fails where another open document is the one in that file.
+    // Fails where another open document is the one in that file. Without `embedPhoto` the photo is left out
+    // if its own file still holds it.
     void save(const QString& path, bool embedPhoto, std::function<void(bool)> then = {});
     void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void(bool)> then);
     // Fails at once where no format is known for the path.

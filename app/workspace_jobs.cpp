@@ -119,13 +119,10 @@ void Workspace::save(DocumentSession* session, const QString& path, bool embedPh
 void Workspace::startSave(DocumentSession& session, const QString& path, bool embedPhoto,
                           std::function<void(bool)> then) {
     Document snapshot = session.document();
-    if (!embedPhoto)
-        snapshot.embeddedSource.reset();
-    else if (session.photo().bytes)
-        snapshot.embeddedSource = session.photo().bytes;
+    if (session.photo().bytes) snapshot.embeddedSource = session.photo().bytes;
     const QPointer<DocumentSession> target = &session;
     const uint64_t revision = session.revision();
-    Job* job = startSaveJob(this, std::move(snapshot), path,
+    Job* job = startSaveJob(this, std::move(snapshot), path, embedPhoto ? QString() : session.photoPath(),
                             [this, target, revision, path, then = std::move(then)](Result<Saved> written) {
                                 if (!written) {
                                     report(written.error());

@@ -47,8 +47,7 @@ class RandomSession {
     explicit RandomSession(unsigned seed) : mRandom(seed) {
         Document document;
         document.mesh = startMesh(seed);
-        mSession = std::make_unique<DocumentSession>(document, Photo{photo(), nullptr, nullptr}, QString(),
-                                                     QString());
+        mSession = std::make_unique<DocumentSession>(document, Photo{photo(), nullptr, nullptr}, QString());
         mTools.setSession(mSession.get());
     }
     ~RandomSession() { mTools.setSession(nullptr); }

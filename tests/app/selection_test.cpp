@@ -30,7 +30,7 @@ struct SelectionTest : ::testing::Test {
     }
     const PatchMesh& mesh() const { return session.document().mesh; }
 
-    DocumentSession session{smallDocument(), {}, {}, {}};
+    DocumentSession session{smallDocument(), {}, {}};
     Selection& selection = session.selection();
 };
 

@@ -44,7 +44,7 @@ struct ToolsTest : ::testing::Test {
     ToolsTest() {
         Document document;
         document.mesh = twoHalves();
-        session = std::make_unique<DocumentSession>(document, Photo{}, QString(), QString());
+        session = std::make_unique<DocumentSession>(document, Photo{}, QString());
         tools.setSession(session.get());
     }
     ~ToolsTest() override { tools.setSession(nullptr); }
@@ -302,7 +302,7 @@ TEST_F(ToolsTest, TheEyedropperPicks) {
 TEST_F(ToolsTest, TheEyedropperPicksFromTheOriginalToo) {
     auto image = std::make_shared<const Image>(
         testing::paint(kWidth, kHeight, 3, [](double, double, int c) { return c == 0 ? .5 : .25; }));
-    session->setPhoto({image, nullptr, nullptr}, "photo.png");
+    session->relinkPhoto({image, nullptr, nullptr}, {});
     tools.setTool(ToolId::Eyedropper);
     pointer.modifiers.alt = true;
     pointer.click({25, 25});

@@ -357,11 +357,77 @@ TEST_F(WorkspaceTest, AMissingPhotoIsRelinked) {
     EXPECT_TRUE(workspace.canVectorize());
     workspace.relinkPhoto(path("photo.png"));
     ASSERT_TRUE(idle());
+    said.action();  // it is not the other one
     EXPECT_EQ(toQImage(*workspace.session()->photo().image), stripes(64, 48));
-    EXPECT_FALSE(workspace.session()->modified());
+    DocumentSession& session = *workspace.session();
+    EXPECT_TRUE(session.modified()) << "closed without a question, the document would not find it again";
+    EXPECT_EQ(session.document().source.fileName, "photo.png");
+    session.history().undo();
+    EXPECT_EQ(session.document().source.fileName, "other.png");
+    EXPECT_NE(toQImage(*session.photo().image), stripes(64, 48));
+    session.history().undo();
+    EXPECT_FALSE(workspace.canVectorize()) << "the photo was missing";
+    EXPECT_FALSE(session.modified());
+    session.history().redo();
+    session.history().redo();
+    EXPECT_EQ(toQImage(*session.photo().image), stripes(64, 48));
     workspace.save(path("a.tessera"), true);
     ASSERT_TRUE(idle());
+    EXPECT_FALSE(session.modified());
     ASSERT_TRUE(loadDocument(at("a.tessera"))->embeddedSource) << "from now on it cannot get lost";
+}
+
+// Another picture than the one that was vectorized is the document's from then on.
+TEST_F(WorkspaceTest, ARelinkedPhotoIsThereAfterTheNextOpening) {
+    Document document;
+    document.mesh = testing::gridMesh(64, 48, 4, 3);
+    document.source.fileName = "gone.png";
+    document.source.sha256 = std::string(64, '0');
+    ASSERT_TRUE(saveDocument(document, at("a.tessera")).has_value());
+    ASSERT_TRUE(stripes(64, 48).save(path("photo.png")));
+    open(path("a.tessera"));
+    workspace.relinkPhoto(path("photo.png"));
+    ASSERT_TRUE(idle());
+    ASSERT_TRUE(said.action);
+    said.action();
+    workspace.save(path("a.tessera"), false);
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(loadDocument(at("a.tessera"))->embeddedSource);
+    workspace.close(workspace.session(), answering({}));
+    EXPECT_EQ(asked, 0);
+    open(path("a.tessera"));
+    EXPECT_TRUE(workspace.canVectorize());
+}
+
+TEST_F(WorkspaceTest, APhotoThatIsNowhereElseStaysInTheDocument) {
+    const QString file = path("a.tessera");
+    const auto embeds = [&] { return loadDocument(at("a.tessera"))->embeddedSource != nullptr; };
+    ASSERT_TRUE(stripes(64, 48).save(path("photo.png")));
+    Document document;
+    document.mesh = testing::gridMesh(64, 48, 4, 3);
+    document.source = readImage(at("photo.png")).value().source;
+    QFile photo(path("photo.png"));
+    ASSERT_TRUE(photo.open(QIODevice::ReadOnly));
+    const QByteArray bytes = photo.readAll();
+    photo.close();
+    document.embeddedSource = std::make_shared<const std::vector<uint8_t>>(bytes.begin(), bytes.end());
+    ASSERT_TRUE(saveDocument(document, at("a.tessera")).has_value());
+    const auto saveWithout = [&] {
+        workspace.save(file, false);
+        ASSERT_TRUE(idle());
+    };
+    ASSERT_TRUE(photo.remove());
+    open(file);
+    saveWithout();
+    EXPECT_TRUE(embeds()) << "the file is gone";
+    ASSERT_TRUE(stripes(65, 48).save(path("photo.png")));
+    saveWithout();
+    EXPECT_TRUE(embeds()) << "it is another picture";
+    ASSERT_TRUE(photo.open(QIODevice::WriteOnly));
+    photo.write(bytes);
+    photo.close();
+    saveWithout();
+    EXPECT_FALSE(embeds());
 }
 
 TEST_F(WorkspaceTest, TheSelectionIsCopiedAsAPicture) {

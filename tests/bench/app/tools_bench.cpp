@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
     }
     std::printf("%zu patches, %d x %d\n", document.mesh.patchCount(), document.mesh.width(),
                 document.mesh.height());
-    DocumentSession session(std::move(document), {}, {}, {});
+    DocumentSession session(std::move(document), {}, {});
     run(session);
     return 0;
 }
