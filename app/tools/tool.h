@@ -86,7 +86,10 @@ class Tool {
     const PatchMesh& mesh() const { return session().document().mesh; }
     const ToolOptions& options() const { return mHost.options(); }
     ToolHost& host() const { return mHost; }
-    // Opens a gesture; false, and none is open, while another one is (of a panel, say).
+    // Whether a gesture can be opened; says that another one (of a panel, say) or an edit under way is in its
+    // way.
+    bool mayBegin() const;
+    // Opens a gesture; false, and none is open, where mayBegin() is false.
     bool begin(std::optional<EditSession>& edit, const QString& text) const;
     // Says what failed, if anything did.
     void report(const Result<void>& result) const;

@@ -137,11 +137,11 @@ class RandomSession {
             case 3:
                 return shrinkSelection(s);
             case 4:
-                return storeSelection(s, QString::number(below(3)));
+                return void(storeSelection(s, QString::number(below(3))));
             case 5:
                 return recallSelection(s, QString::number(below(3)), SelectMode(below(4)));
             case 6:
-                return removeStoredSelection(s, QString::number(below(3)));
+                return void(removeStoredSelection(s, QString::number(below(3))));
             case 7:
                 return s.history().undo();
             case 8:

@@ -84,6 +84,22 @@ TEST_F(ToolsTest, ClicksSelectPatches) {
     EXPECT_TRUE(selected().empty()) << "a click beside the picture";
 }
 
+// As while a job edits many elements.
+TEST_F(ToolsTest, SayThatAnotherChangeIsUnderWay) {
+    QString said;
+    QObject::connect(&tools, &ToolManager::said, [&](const QString& text) { said = text; });
+    session->selection().setPatches({patchAt({25, 25})});
+    EditSession other(*session, "Other");
+    for (const ToolId tool :
+         {ToolId::Brush, ToolId::DragColour, ToolId::Gradient, ToolId::Blur, ToolId::Direct}) {
+        said.clear();
+        tools.setTool(tool);
+        pointer.drag(place(vertex(3, 2)), {70, 70});
+        EXPECT_TRUE(said.contains("under way")) << "tool " << int(tool);
+        EXPECT_EQ(history().count(), 0);
+    }
+}
+
 TEST_F(ToolsTest, AMarqueeSelectsAsItGrows) {
     pointer.press({1, 1});
     pointer.move({41, 44});

@@ -233,7 +233,8 @@ void PalettePanel::select(int entry, Qt::KeyboardModifiers modifiers) {
 }
 
 void PalettePanel::edit(int entry) {
-    if (!mSession || mSession->editing()) return;
+    if (!mSession) return;
+    if (mSession->editing()) return emit said(asSentence(refusedMeanwhile().value().message));
     const auto* button = qobject_cast<SwatchButton*>(mEntries->itemAt(entry)->widget());
     mEntry = entry;
     highlight(-1);  // the colours shall be seen as they will be

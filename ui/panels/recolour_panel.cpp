@@ -302,8 +302,7 @@ void RecolourPanel::beginRow(Row row, const QString& text) {
     if (!mAdjustment) mAdjustment.emplace(*mSession, mSession->selection().patches());
     const Recolouring kind = recolouring(row);
     if (!mAdjustment->begin(text, kind, recolourOptions())) {
-        emit said(tr("Another change is under way; finish it and try again."));
-        return;
+        return say(refusedMeanwhile());
     }
     // Those of other kinds are neutral again: what they did is what this begins with.
     for (int other = 0; other < RowCount; ++other)
