@@ -6,6 +6,8 @@
 #include <QDir>
 #include <QSignalSpy>
 #include <QTest>
+#include <atomic>
+#include <thread>
 
 #include "app/autosave.h"
 #include "app/edit_session.h"
@@ -69,6 +71,32 @@ TEST_F(RecoveryStoreTest, WhatIsForgottenIsGone) {
         EXPECT_FALSE(slot->info().has_value());
     }
     EXPECT_EQ(folders(), 0);
+}
+
+// The window forgets; it must not wait for a disk.
+TEST_F(RecoveryStoreTest, ForgettingDoesNotWaitForAWriteUnderWay) {
+    RecoveryStore store(root());
+    Document large = painted(.1f);
+    large.embeddedSource = std::make_shared<const std::vector<uint8_t>>(size_t{100} << 20, uint8_t{7});
+    const QString folder = QDir(root()).entryInfoList(QDir::Dirs | QDir::NoDotAndDotDot).at(0).filePath();
+    const auto files = [&] { return QDir(folder).entryList(QDir::Files | QDir::Hidden).size(); };
+    bool early = false;
+    // The writer may be faster than we once, and not always.
+    for (int attempt = 0; attempt < 5 && !early; ++attempt) {
+        const auto slot = store.newSlot();
+        std::atomic<bool> done = false;
+        std::thread writer([&] {
+            EXPECT_TRUE(slot->write(large, info));
+            done = true;
+        });
+        while (files() < 2 && !done) std::this_thread::yield();
+        slot->forget();
+        early = !done;
+        writer.join();
+        EXPECT_FALSE(slot->info().has_value());
+        EXPECT_EQ(files(), 1) << "the lock alone";
+    }
+    EXPECT_TRUE(early);
 }
 
 TEST_F(RecoveryStoreTest, RubbishIsClearedAway) {
