@@ -95,6 +95,9 @@ class Workspace : public QObject {
     void save(DocumentSession* session, const QString& path, bool embedPhoto, std::function<void(bool)> then);
     // Fails at once where no format is known for the path.
     void exportPicture(const ExportRequest& request);
+    // The selected patches of the current document, or all of it, as a picture for the clipboard. `then`
+    // hears of it unless that was stopped; a later call takes the place of one that is not done yet.
+    void drawSelection(std::function<void(const QImage&)> then);
     // The last export of the current document, with what it is now.
     void exportAgain();
     bool canExportAgain() const;

@@ -7,6 +7,7 @@
 #include "app/jobs/draft_job.h"
 #include "app/jobs/element_edit_job.h"
 #include "app/jobs/save_job.h"
+#include "app/selection_picture.h"
 #include "app/workspace.h"
 #include "core/image/image_io.h"
 
@@ -162,6 +163,16 @@ void Workspace::exportPicture(const ExportRequest& request) {
             });
         track(job, target);
     });
+}
+
+void Workspace::drawSelection(std::function<void(const QImage&)> then) {
+    if (!mCurrent || !mCurrent->hasMesh()) return;
+    for (const Job* job : jobs({JobKind::Copy}, nullptr)) drop(job);
+    Job* job = startSelectionPictureJob(this, mCurrent->document().mesh, mCurrent->selection().patches(),
+                                        [this, then = std::move(then)](Result<QImage> picture) {
+                                            picture ? then(*picture) : report(picture.error());
+                                        });
+    track(job, mCurrent);
 }
 
 void Workspace::edit(const Result<ElementEdit>& edit) {

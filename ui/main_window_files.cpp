@@ -12,7 +12,6 @@
 #include <QPushButton>
 
 #include "app/file_service.h"
-#include "app/selection_picture.h"
 #include "ui/dialogs/export_dialog.h"
 #include "ui/dialogs/save_path.h"
 #include "ui/main_window.h"
@@ -98,9 +97,13 @@ void MainWindow::paste() {
 void MainWindow::copy() {
     const DocumentSession* session = mWorkspace.session();
     if (!session || !session->hasMesh()) return;
-    QGuiApplication::clipboard()->setImage(selectionPicture(*session));
-    say(session->selection().patches().empty() ? tr("The picture is in the clipboard.")
-                                               : tr("The selected patches are in the clipboard."));
+    const QString done = session->selection().patches().empty()
+                             ? tr("The picture is in the clipboard.")
+                             : tr("The selected patches are in the clipboard.");
+    mWorkspace.drawSelection([this, done](const QImage& picture) {
+        QGuiApplication::clipboard()->setImage(picture);
+        say(done);
+    });
 }
 
 void MainWindow::closeSession(DocumentSession* session) {

@@ -9,7 +9,6 @@
 
 #include "app/edit_session.h"
 #include "app/element_edits.h"
-#include "app/selection_picture.h"
 #include "core/document/codec.h"
 #include "core/image/image_io.h"
 #include "tests/support/edits.h"
@@ -432,13 +431,20 @@ TEST_F(WorkspaceTest, APhotoThatIsNowhereElseStaysInTheDocument) {
 
 TEST_F(WorkspaceTest, TheSelectionIsCopiedAsAPicture) {
     open(documentFile("a.tessera"));
-    const QImage whole = selectionPicture(*workspace.session());
+    const auto copy = [&] {
+        QImage copied;
+        workspace.drawSelection([&](const QImage& picture) { copied = picture; });
+        EXPECT_TRUE(copied.isNull()) << "the window does not wait for it";
+        EXPECT_TRUE(idle());
+        return copied;
+    };
+    const QImage whole = copy();
     EXPECT_EQ(whole.size(), QSize(40, 30));
     EXPECT_EQ(whole.pixel(3, 3), qRgb(0, 0, 0));
     change();
     // One triangle of the second cell.
     workspace.session()->selection().setPatches({PatchId(3)});
-    const QImage picture = selectionPicture(*workspace.session());
+    const QImage picture = copy();
     EXPECT_EQ(picture.size(), QSize(10, 10));
     EXPECT_EQ(picture.pixelColor(1, 8).alpha(), 255);
     EXPECT_NEAR(picture.pixelColor(1, 8).red(), 128, 1);
