@@ -54,8 +54,8 @@ std::shared_ptr<const Bytes> photoBeside(const QString& documentPath, const Sour
     return std::make_shared<const Bytes>(std::move(*bytes));
 }
 
-Result<OpenedFile> openDocument(const QString& path, Progress& progress) {
-    Result<Document> document = loadDocument(path.toStdString());
+Result<OpenedFile> openDocument(const QString& path, const Bytes& file, Progress& progress) {
+    Result<Document> document = decodeFile(file, path.toStdString());
     if (!document) return tl::unexpected<Error>(document.error());
     OpenedFile opened{.document = std::move(*document), .photo = {}, .path = path};
     if (!progress.step(.3)) return stopped();
@@ -91,7 +91,7 @@ Result<OpenedFile> openFile(const QString& path, Progress& progress) {
     Result<Bytes> bytes = readBytes(path);
     if (!bytes) return tl::unexpected<Error>(bytes.error());
     if (!progress.step(.1)) return stopped();
-    if (looksLikeDocument(*bytes)) return openDocument(path, progress);
+    if (looksLikeDocument(*bytes)) return openDocument(path, *bytes, progress);
     return openPicture(path, std::move(*bytes), progress);
 }
 

@@ -8,10 +8,10 @@
 #include <QGuiApplication>
 #include <QMenu>
 #include <QMessageBox>
-#include <QMimeData>
 #include <QPushButton>
 
 #include "app/file_service.h"
+#include "ui/conversions.h"
 #include "ui/dialogs/export_dialog.h"
 #include "ui/dialogs/save_path.h"
 #include "ui/main_window.h"
@@ -19,18 +19,6 @@
 #include "ui/start_page.h"
 
 namespace tessera {
-
-namespace {
-
-// The local files of what is being dragged.
-QStringList droppedFiles(const QMimeData* data) {
-    QStringList files;
-    for (const QUrl& url : data->urls())
-        if (url.isLocalFile()) files.append(url.toLocalFile());
-    return files;
-}
-
-}  // namespace
 
 void MainWindow::open(const QString& path) {
     mWorkspace.open(path);
@@ -167,11 +155,11 @@ void MainWindow::closeEvent(QCloseEvent* event) {
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-    if (!droppedFiles(event->mimeData()).isEmpty()) event->acceptProposedAction();
+    if (!localFiles(event->mimeData()).isEmpty()) event->acceptProposedAction();
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
-    const QStringList paths = droppedFiles(event->mimeData());
+    const QStringList paths = localFiles(event->mimeData());
     if (paths.isEmpty()) return;
     event->acceptProposedAction();
     for (const QString& path : paths) open(path);

@@ -10,6 +10,7 @@
 #include "app/element_edits.h"
 #include "app/selection_actions.h"
 #include "app/tools/tool_manager.h"
+#include "core/edit/edge_edits.h"
 #include "core/mesh/mesh_validate.h"
 #include "tests/support/edits.h"
 #include "tests/support/test_meshes.h"
@@ -159,7 +160,9 @@ class RandomSession {
             case 13:
                 return void(makeNow(s, setFeature(s, below(2) == 0)));
             case 14:
-                return void(setBlur(s, 3 * unit(), 3 * unit()));
+                return void(applyEdit(s, "Blur", [&](PatchMesh& mesh) {
+                    return setBlur(mesh, s.selection().curves(), 3 * unit(), 3 * unit());
+                }));
             case 15:
                 // Few, so that the mesh does not grow without end.
                 if (s.selection().patches().size() < 3) (void)makeNow(s, splitPatches(s));
