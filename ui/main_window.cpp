@@ -79,6 +79,7 @@ MainWindow::~MainWindow() {
 void MainWindow::connectActions() {
     const ActionTable& a = *mActions;
     const auto on = [&](ActionId id, auto slot) { connect(a[id], &QAction::triggered, this, slot); };
+    on(ActionId::New, [this] { mWorkspace.setCurrent(nullptr); });
     on(ActionId::Open, [this] { chooseAndOpen(); });
     on(ActionId::Paste, [this] { paste(); });
     on(ActionId::Copy, [this] { copy(); });
@@ -167,11 +168,13 @@ void MainWindow::connectWorkspace() {
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::zoomClicked, this, [this] { mCanvas->zoomTo(1); });
     connect(mTabs, &QTabBar::currentChanged, this, [this](int tab) {
-        if (tab >= 0 && tab < mWorkspace.sessions().size()) mWorkspace.setCurrent(mWorkspace.sessions()[tab]);
+        if (tab >= 0) mWorkspace.setCurrent(mWorkspace.sessions().value(tab));
     });
     connect(mTabs, &QTabBar::tabCloseRequested, this,
             [this](int tab) { closeSession(mWorkspace.sessions().value(tab)); });
     connect(mTabs, &QTabBar::tabMoved, &mWorkspace, &Workspace::moveSession);
+    // The tab of the start page stays behind those of documents.
+    connect(mTabs, &QTabBar::tabMoved, this, &MainWindow::showTabs, Qt::QueuedConnection);
 }
 
 void MainWindow::connectCanvas() {
@@ -290,15 +293,22 @@ void MainWindow::showBeginning() {
 void MainWindow::showTabs() {
     const QSignalBlocker quiet(mTabs);
     const auto& sessions = mWorkspace.sessions();
-    while (mTabs->count() > sessions.size()) mTabs->removeTab(mTabs->count() - 1);
+    // The start page has a tab while there are documents to go back to.
+    const bool startTab = !mWorkspace.session() && !sessions.isEmpty();
+    const qsizetype count = sessions.size() + (startTab ? 1 : 0);
+    while (mTabs->count() > count) mTabs->removeTab(mTabs->count() - 1);
+    while (mTabs->count() < count) mTabs->addTab({});
     for (int i = 0; i < sessions.size(); ++i) {
-        if (i == mTabs->count()) mTabs->addTab({});
         const DocumentSession* session = sessions[i];
         mTabs->setTabText(i, session->displayName() + (session->modified() ? " •" : ""));
         mTabs->setTabToolTip(i, session->path().isEmpty() ? session->photoPath() : session->path());
     }
-    if (mWorkspace.session()) mTabs->setCurrentIndex(int(sessions.indexOf(mWorkspace.session())));
-    mTabs->setVisible(sessions.size() > 1);
+    if (startTab) {
+        mTabs->setTabText(mTabs->count() - 1, tr("New"));
+        mTabs->setTabToolTip(mTabs->count() - 1, {});
+    }
+    mTabs->setCurrentIndex(startTab ? mTabs->count() - 1 : int(sessions.indexOf(mWorkspace.session())));
+    mTabs->setVisible(count > 1);
 }
 
 void MainWindow::showView() {
@@ -325,9 +335,11 @@ void MainWindow::updateActions() {
     enable({ActionId::ExportAgain}, mWorkspace.canExportAgain());
     enable({ActionId::Vectorize}, mWorkspace.canVectorize());
     enable({ActionId::Cancel}, mWorkspace.currentJob());
-    enable({ActionId::Close, ActionId::ZoomIn, ActionId::ZoomOut, ActionId::ZoomFit, ActionId::Zoom100,
-            ActionId::PreviousZoom},
-           session);
+    enable({ActionId::New}, session);
+    enable({ActionId::Close}, !mWorkspace.sessions().isEmpty());
+    enable(
+        {ActionId::ZoomIn, ActionId::ZoomOut, ActionId::ZoomFit, ActionId::Zoom100, ActionId::PreviousZoom},
+        session);
     enable({ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowCentres,
             ActionId::ShowBlur, ActionId::ShowImportance, ActionId::OutlineView, ActionId::Copy,
             ActionId::Relink},

@@ -125,6 +125,7 @@ class MainWindow : public QMainWindow {
     QString askForPath(const DocumentSession& session);
     void chooseAndExport();
     void chooseAndRelink();
+    // Null is the start page in a tab of its own.
     void closeSession(DocumentSession* session);
     CloseQuestions closeQuestions();
     CloseAnswer askAboutChanges(DocumentSession& session);

@@ -95,7 +95,9 @@ void MainWindow::copy() {
 }
 
 void MainWindow::closeSession(DocumentSession* session) {
-    if (session) mWorkspace.close(session, closeQuestions());
+    if (session) return mWorkspace.close(session, closeQuestions());
+    // The start page, which is no document.
+    if (!mWorkspace.sessions().isEmpty()) mWorkspace.setCurrent(mWorkspace.sessions().last());
 }
 
 CloseQuestions MainWindow::closeQuestions() {

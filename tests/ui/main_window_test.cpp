@@ -541,6 +541,34 @@ TEST_F(MainWindowTest, QuestionsEndWithTheirDocument) {
     EXPECT_EQ(bar.text(), "Second?");
 }
 
+TEST_F(MainWindowTest, NewShowsTheStartPageInATabOfItsOwn) {
+    auto* start = window->findChild<StartPage*>();
+    openPhoto();
+    DocumentSession* const first = session();
+    QTest::keyClick(&canvas(), Qt::Key_N, Qt::ControlModifier);
+    EXPECT_EQ(session(), nullptr);
+    EXPECT_TRUE(start->isVisible());
+    QTabBar& tabs = window->tabs();
+    ASSERT_EQ(tabs.count(), 2);
+    EXPECT_EQ(tabs.currentIndex(), 1);
+    QTest::mouseClick(&tabs, Qt::LeftButton, {}, tabs.tabRect(0).center());
+    EXPECT_EQ(session(), first);
+    EXPECT_FALSE(start->isVisible());
+    EXPECT_EQ(tabs.count(), 1);
+    action(ActionId::New)->trigger();
+    action(ActionId::Close)->trigger();
+    EXPECT_EQ(session(), first) << "there was nothing else to close";
+    action(ActionId::New)->trigger();
+    const QString second = folder.filePath("second.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    window->open(second);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(session()->width(), 90);
+    ASSERT_EQ(tabs.count(), 2);
+    EXPECT_EQ(tabs.tabText(1), "second.png");
+    EXPECT_FALSE(start->isVisible());
+}
+
 TEST_F(MainWindowTest, OpensWhatIsDropped) {
     drop(photo);
     ASSERT_TRUE(idle());
