@@ -25,6 +25,7 @@ class EditSession {
     ~EditSession() { cancel(); }
 
     bool open() const { return mOpen && mSession; }
+    const QString& text() const { return mText; }
     // The mesh as it was when the session was opened.
     const PatchMesh& start() const { return mStart; }
     // What preview() has changed of the start state.

@@ -104,6 +104,8 @@ class Workspace : public QObject {
     // Makes an edit of the current document one step: at once where it is small, else by a job, during which
     // an EditSession is open. Says what could not be edited, or why nothing could.
     void edit(const Result<ElementEdit>& edit);
+    // Ends a gesture on the current document likewise (FinishGesture).
+    void finish(std::shared_ptr<EditSession> gesture, ElementEdit edit, EditThen then);
 
     // Of all documents, those to come included.
     void setHistoryLimit(size_t bytes);
@@ -161,7 +163,8 @@ class Workspace : public QObject {
     void remove(DocumentSession* session);
     void applyVectorized(DocumentSession& session, uint64_t revision, Vectorized vectorized);
     void applyRelinked(DocumentSession& session, OpenedFile opened, const QString& path);
-    void startEdit(ElementEdit edit);
+    // The gesture is open; it goes with the job, where that goes first, and gives back the state before.
+    void startEdit(std::shared_ptr<EditSession> gesture, ElementEdit edit, EditThen then);
     void startSave(DocumentSession& session, const QString& path, bool embedPhoto,
                    std::function<void(bool)> then);
     Job* find(JobKind kind, const DocumentSession* session) const;

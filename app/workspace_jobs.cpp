@@ -177,32 +177,39 @@ void Workspace::drawSelection(std::function<void(const QImage&)> then) {
 
 void Workspace::edit(const Result<ElementEdit>& edit) {
     if (!mCurrent) return;
-    if (edit && edit->count > kEditedAtOnce && !mCurrent->editing()) return startEdit(*edit);
+    if (edit && edit->count > kEditedAtOnce && !mCurrent->editing())
+        return startEdit(std::make_shared<EditSession>(*mCurrent, edit->text), *edit, {});
     const Result<QString> made = makeNow(*mCurrent, edit);
     const QString words = made ? *made : asSentence(made.error().message);
     if (!words.isEmpty()) emit said({.kind = Message::Kind::Info, .text = words});
 }
 
-void Workspace::startEdit(ElementEdit edit) {
-    // It goes with the job, where that goes first, and gives back the state before.
-    const auto open = std::make_shared<EditSession>(*mCurrent, edit.text);
+void Workspace::finish(std::shared_ptr<EditSession> gesture, ElementEdit edit, EditThen then) {
+    if (!mCurrent || edit.count <= kEditedAtOnce) return finishNow(std::move(gesture), edit, then);
+    startEdit(std::move(gesture), std::move(edit), std::move(then));
+}
+
+void Workspace::startEdit(std::shared_ptr<EditSession> gesture, ElementEdit edit, EditThen then) {
     const QPointer<DocumentSession> target = mCurrent;
-    const auto deliver = [this, open, target, text = edit.text](Result<EditedMesh> result) {
-        open->cancel();
+    const PatchMesh start = gesture->start();
+    const auto deliver = [this, gesture = std::move(gesture), then = std::move(then), target,
+                          text = edit.text](Result<EditedMesh> result) {
+        gesture->cancel();
         if (!target) return;
-        if (!result) {
-            if (result.error().code == ErrorCode::Stopped) return;
+        Result<Touched> touched = Touched{};
+        if (result) {
+            touched = applyEdit(*target, text, [&](PatchMesh& mesh) -> Result<Touched> {
+                mesh = std::move(result->mesh);
+                return std::move(result->edited.touched);
+            });
+            if (!result->edited.remark.isEmpty())
+                emit said({.kind = Message::Kind::Info, .text = result->edited.remark});
+        } else if (result.error().code != ErrorCode::Stopped) {
             emit said({.kind = Message::Kind::Info, .text = asSentence(result.error().message)});
-            return;
         }
-        (void)applyEdit(*target, text, [&](PatchMesh& mesh) -> Result<Touched> {
-            mesh = std::move(result->mesh);
-            return std::move(result->edited.touched);
-        });
-        if (!result->edited.remark.isEmpty())
-            emit said({.kind = Message::Kind::Info, .text = result->edited.remark});
+        if (then) then(touched.value_or(Touched{}));
     };
-    track(startElementEditJob(this, open->start(), std::move(edit), deliver), mCurrent);
+    track(startElementEditJob(this, start, std::move(edit), deliver), mCurrent);
 }
 
 Job* Workspace::find(JobKind kind, const DocumentSession* session) const {

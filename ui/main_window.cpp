@@ -214,6 +214,9 @@ void MainWindow::connectPanels() {
     connect(mCanvas, &CanvasWidget::draftLeft, this, &MainWindow::leaveDraft);
     connect(mCanvas, &CanvasWidget::draftPressed, this, &MainWindow::explainDraft);
     connect(&mDrafts, &DraftPreview::changed, this, &MainWindow::showDraft);
+    mTools.setFinish([this](std::shared_ptr<EditSession> gesture, ElementEdit edit, EditThen then) {
+        mWorkspace.finish(std::move(gesture), std::move(edit), std::move(then));
+    });
     mRecolour->setToolOptions(mTools);
     mPalette->setToolOptions(mTools);
     mSelection->setToolOptions(mTools);

@@ -129,7 +129,7 @@ void GradientTool::dragged(const ToolEvent& event) {
 }
 
 void GradientTool::dropped(const ToolEvent&) {
-    if (mGesture) mGesture->commit();
+    if (mGesture) mGesture->commit(host().finish());
     mGesture.reset();
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <variant>
 
-#include "app/edit_session.h"
+#include "app/element_edits.h"
 #include "app/tools/tool_event.h"
 #include "app/tools/tool_options.h"
 #include "app/tools/tool_overlay.h"
@@ -53,6 +53,8 @@ class ToolHost {
     virtual void changeView(const ViewRequest& request) = 0;
     // One sentence for the person.
     virtual void say(const QString& text) = 0;
+    // Ends gestures whose last edit may take longer than a frame.
+    virtual const FinishGesture& finish() const = 0;
 };
 
 class Tool {

@@ -7,8 +7,10 @@
 #include <QTest>
 #include <cmath>
 
+#include "app/colour_adjustment.h"
 #include "app/edit_session.h"
 #include "app/element_edits.h"
+#include "app/recolour_gesture.h"
 #include "core/document/codec.h"
 #include "core/image/image_io.h"
 #include "tests/support/edits.h"
@@ -542,6 +544,105 @@ TEST_F(ManyElements, AFewAreEditedAtOnceAndFailuresAreSaid) {
     session->selection().clear();
     workspace.edit(splitPatches(*session));
     EXPECT_EQ(said.text, "Select patches first.");
+}
+
+// The last, exact frame of a gesture takes a second for tens of thousands of patches.
+class ManyPatches : public WorkspaceTest {
+  protected:
+    void SetUp() override {
+        WorkspaceTest::SetUp();
+        Document document;
+        document.mesh = testing::gridMesh(240, 160, 60, 40);
+        document.mesh.forEachPatch(
+            [&](PatchId p) { document.mesh.setSpline(p, constantSpline(std::array{.8f, .3f, .2f})); });
+        ASSERT_TRUE(saveDocument(document, at("many.tessera")).has_value());
+        open(path("many.tessera"));
+        session = workspace.session();
+        start = testing::bytesOf(session->document());
+        session->selection().setPatches(allSelectable(session->document().mesh));
+        exact = session->document().mesh;
+        recolour(exact, session->selection().patches(), kGreen);
+    }
+    const FinishGesture finish = [this](std::shared_ptr<EditSession> gesture, ElementEdit edit,
+                                        EditThen then) {
+        workspace.finish(std::move(gesture), std::move(edit), std::move(then));
+    };
+    bool hasColoursOf(const PatchMesh& mesh) const {
+        bool same = true;
+        mesh.forEachPatch(
+            [&](PatchId p) { same = same && mesh.spline(p) == session->document().mesh.spline(p); });
+        return same;
+    }
+
+    const Recolouring kGreen = ReplaceColour{{.2, .8, .3}};
+    const Recolouring kTurned = ColourShift{.hueDegrees = 120};
+    DocumentSession* session = nullptr;
+    std::vector<uint8_t> start;
+    PatchMesh exact;
+};
+
+TEST_F(ManyPatches, AGestureIsEndedByAJobAndShowsWhatItShowedMeanwhile) {
+    RecolourGesture gesture(*session, "Replace Colour");
+    gesture.show(kGreen);
+    const PatchMesh shown = session->document().mesh;
+    gesture.commit(finish);
+    ASSERT_NE(workspace.running(JobKind::Edit), nullptr);
+    EXPECT_TRUE(session->editing());
+    EXPECT_TRUE(hasColoursOf(shown));
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(session->editing());
+    EXPECT_TRUE(hasColoursOf(exact));
+    EXPECT_EQ(session->history().count(), 1);
+    EXPECT_EQ(session->history().undoText(), "Replace Colour");
+    session->history().undo();
+    EXPECT_EQ(testing::bytesOf(session->document()), start);
+    RecolourGesture other(*session, "Replace Colour");
+    other.show(kGreen);
+    other.commit(finish);
+    workspace.cancel();
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(session->editing());
+    EXPECT_EQ(testing::bytesOf(session->document()), start) << "it was stopped";
+}
+
+TEST_F(ManyPatches, SlidersStayWhereTheyAreUntilTheJobHasEnded) {
+    ColourAdjustment adjustment(*session, session->selection().patches());
+    ASSERT_TRUE(adjustment.begin("Hue", kTurned, {}));
+    adjustment.show(kTurned);
+    bool told = false;
+    adjustment.commit(finish, [&] { told = true; });
+    ASSERT_NE(workspace.running(JobKind::Edit), nullptr);
+    EXPECT_FALSE(told);
+    ASSERT_TRUE(adjustment.value());
+    EXPECT_EQ(std::get<ColourShift>(*adjustment.value()).hueDegrees, 120);
+    EXPECT_FALSE(adjustment.begin("Hue", kTurned, {})) << "one after the other";
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(told);
+    EXPECT_EQ(std::get<ColourShift>(adjustment.value().value()).hueDegrees, 120);
+    session->history().undo();
+    EXPECT_EQ(std::get<ColourShift>(adjustment.value().value()).hueDegrees, 0);
+}
+
+TEST_F(ManyPatches, ASliderGoesBackWithTheJobThatWasToMakeItsStep) {
+    ASSERT_TRUE(
+        applyEdit(*session, "Paint", [](PatchMesh& m) { return testing::paint(m, PatchId(3), .5f); }));
+    ColourAdjustment adjustment(*session, session->selection().patches());
+    ASSERT_TRUE(adjustment.begin("Hue", kTurned, {}));
+    adjustment.show(kTurned);
+    adjustment.commit(finish);
+    // Kept after all.
+    workspace.close(session, answering({CloseAnswer::Kind::Cancel}, RunningAnswer::Stop));
+    EXPECT_EQ(asked, 1);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(std::get<ColourShift>(adjustment.value().value()).hueDegrees, 0);
+    // Its end does not wait for the job, nor the job for it.
+    std::optional<ColourAdjustment> brief(std::in_place, *session, session->selection().patches());
+    ASSERT_TRUE(brief->begin("Hue", kTurned, {}));
+    brief->show(kTurned);
+    brief->commit(finish);
+    brief.reset();
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(session->history().undoText(), "Hue");
 }
 
 }  // namespace

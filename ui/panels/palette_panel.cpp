@@ -244,31 +244,21 @@ void PalettePanel::edit(int entry) {
 
 void PalettePanel::preview(glm::dvec3 colour) {
     if (!mSession) return;
-    if (!mEdit) {
+    if (!mGesture) {
         if (mSession->editing()) return;
-        mEdit.emplace(*mSession, tr("Change Palette Colour"));
         PatchSet all;
-        mEdit->start().forEachPatch([&](PatchId p) { all.push_back(p); });
-        mRecolourer.emplace(mEdit->start(), std::move(all));
+        mSession->document().mesh.forEachPatch([&](PatchId p) { all.push_back(p); });
+        mGesture.emplace(*mSession, tr("Change Palette Colour"), std::move(all));
     }
-    draw(colour, &Recolourer::preview);
-}
-
-void PalettePanel::draw(glm::dvec3 colour,
-                        Touched (Recolourer::*recolour)(PatchMesh&, const Recolouring&) const) {
-    // Recolourings have no way to fail.
-    (void)mEdit->preview([&](PatchMesh& mesh) -> Result<Touched> {
-        return ((*mRecolourer).*recolour)(mesh, PaletteShift{mPalette, mEntry, colour});
-    });
+    mGesture->show(PaletteShift{mPalette, mEntry, colour});
 }
 
 void PalettePanel::finishEdit(std::optional<glm::dvec3> colour) {
-    if (mEdit && colour) {
-        draw(*colour, &Recolourer::apply);
-        mEdit->commit();
+    if (mGesture && colour) {
+        mGesture->show(PaletteShift{mPalette, mEntry, *colour});
+        mGesture->commit(mTools ? mTools->finish() : finishNow);
     }
-    mEdit.reset();
-    mRecolourer.reset();
+    mGesture.reset();
 }
 
 void PalettePanel::useColour(glm::dvec3 colour) {

@@ -84,7 +84,7 @@ void run(DocumentSession& session) {
                     [&](int i) { gesture.show(ColourShift{10. * i + 5, 1, 0}); });
         printFrames("tint of all patches, a frame", 5,
                     [&](int i) { gesture.show(Tint{{1, 0, 0}, .1 * i + .1}); });
-        print("its end", [&] { gesture.commit(); });
+        print("its end", [&] { gesture.commit(finishNow); });
     }
     std::printf("%-44s %8.2f MB\n", "held by that step", double(session.history().bytes()) / (1 << 20));
     print("undo", [&] { session.history().undo(); });
