@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "app/edit_session.h"
+#include "app/element_edits.h"
 #include "core/edit/recolour.h"
 
 namespace tessera {
@@ -25,16 +25,17 @@ class ColourAdjustment {
     std::optional<Recolouring> value() const;
 
     // A gesture: begin, show any number of times, commit or cancel. What is shown is near, what is committed
-    // exact. False, and none is begun, where an
-    // EditSession is open. `kind` is any value of the recolouring that will be shown.
+    // exact. False, and none is begun, where an EditSession is open. `kind` is any value of the recolouring
+    // that will be shown.
     bool begin(const QString& text, const Recolouring& kind, const RecolourOptions& options);
-    bool active() const { return mGesture.has_value() && mGesture->open(); }
+    bool active() const { return mGesture && mGesture->open(); }
     void show(const Recolouring& how);
-    void commit();
+    // `then`, where given, is called when value() is what was committed.
+    void commit(const FinishGesture& finish, std::function<void()> then = {});
     void cancel();
 
   private:
-    void draw(Touched (Recolourer::*recolour)(PatchMesh&, const Recolouring&) const);
+    void committed(const Touched& touched, uint64_t revisionBefore);
     void startFrom(const Recolouring& kind, const RecolourOptions& options);
 
     QPointer<DocumentSession> mSession;
@@ -44,9 +45,11 @@ class ColourAdjustment {
     Touched mTouched;                         // by all steps since the base
     std::map<uint64_t, Recolouring> mValues;  // by revision, the base's too; of one kind
     // Of the gesture under way. A recolourer of many patches is large: it does not outlive its gesture.
-    std::optional<Recolourer> mRecolourer;
-    std::optional<EditSession> mGesture;
+    std::shared_ptr<Recolourer> mRecolourer;
+    std::shared_ptr<EditSession> mGesture;
     std::optional<Recolouring> mShown;
+    std::weak_ptr<EditSession> mEnding;  // committed, but its step has not been made yet
+    std::shared_ptr<int> mAlive = std::make_shared<int>();
 };
 
 }  // namespace tessera

@@ -8,13 +8,11 @@
 
 namespace tessera {
 
-DocumentSession::DocumentSession(Document document, Photo photo, QString path, QString photoPath,
-                                 QObject* parent)
+DocumentSession::DocumentSession(Document document, Photo photo, QString path, QObject* parent)
     : QObject(parent),
       mDocument(std::move(document)),
       mPhoto(std::move(photo)),
       mPath(std::move(path)),
-      mPhotoPath(std::move(photoPath)),
       mHistory(*this),
       mMarks(mDocument.mesh) {}
 
@@ -32,11 +30,11 @@ bool DocumentSession::hasAlpha() const {
 }
 
 QString DocumentSession::displayName() const {
-    return QFileInfo(mPath.isEmpty() ? mPhotoPath : mPath).fileName();
+    return QFileInfo(mPath.isEmpty() ? mPhoto.path : mPath).fileName();
 }
 
 QString DocumentSession::suggestedPath(const QString& suffix) const {
-    const QFileInfo origin(mPath.isEmpty() ? mPhotoPath : mPath);
+    const QFileInfo origin(mPath.isEmpty() ? mPhoto.path : mPath);
     return origin.dir().filePath(origin.completeBaseName() + '.' + suffix);
 }
 
@@ -56,15 +54,20 @@ void DocumentSession::markUnsaved() {
     emit mHistory.changed();
 }
 
-void DocumentSession::setPhoto(Photo photo, const QString& path) {
-    mPhoto = std::move(photo);
-    mPhotoPath = path;
-    emit changed({.photo = true});
+void DocumentSession::relinkPhoto(Photo photo, SourceInfo source) {
+    Document after = mDocument;
+    after.embeddedSource = photo.bytes;
+    if (source.sha256 != after.source.sha256) after.difference.reset();
+    after.source = std::move(source);
+    mHistory.push(
+        EditCommand(*this, tr("Relink Photo"), std::move(after), {.photo = true}, std::move(photo)));
 }
 
-void DocumentSession::swapState(Document& document, uint64_t& revision, const Change& change) {
+void DocumentSession::swapState(Document& document, uint64_t& revision, std::optional<Photo>& photo,
+                                const Change& change) {
     std::swap(mDocument, document);
     std::swap(mRevision, revision);
+    if (photo) std::swap(mPhoto, *photo);
     announce(document.mesh, change);
 }
 
@@ -93,7 +96,13 @@ void DocumentSession::setEditing(bool editing) {
         QMetaObject::invokeMethod(this, &DocumentSession::runWaiting, Qt::QueuedConnection);
 }
 
+void DocumentSession::retire() {
+    mRetired = true;
+    mWaiting.clear();
+}
+
 void DocumentSession::whenIdle(std::function<void()> work) {
+    if (mRetired) return;
     // After what waits already, even if nothing is in its way any more.
     if (!mEditing && mWaiting.empty()) return work();
     mWaiting.push_back(std::move(work));

@@ -6,23 +6,17 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "app/change.h"
 #include "app/history.h"
 #include "app/mesh_index.h"
 #include "app/patch_marks.h"
-#include "app/picture_pyramid.h"
+#include "app/photo.h"
 #include "app/selection.h"
 #include "core/document/document.h"
 
 namespace tessera {
-
-// The photo in the forms in which it is used; all null where it is not known.
-struct Photo {
-    std::shared_ptr<const Image> image;
-    std::shared_ptr<const PicturePyramid> pyramid;
-    std::shared_ptr<const std::vector<uint8_t>> bytes;  // of its file, for documents to embed
-};
 
 // Lives on the UI thread. A revision, above 0, names one state of the document: a command takes it to a new
 // one, undoing it brings back the old one. Jobs remember the revision that they started from.
@@ -30,10 +24,8 @@ class DocumentSession : public QObject {
     Q_OBJECT
 
   public:
-    // `path` is the .tessera file; empty for a photo that was never saved. `photoPath` is where the photo
-    // came from.
-    DocumentSession(Document document, Photo photo, QString path, QString photoPath,
-                    QObject* parent = nullptr);
+    // `path` is the .tessera file; empty for a photo that was never saved.
+    DocumentSession(Document document, Photo photo, QString path, QObject* parent = nullptr);
 
     const Document& document() const { return mDocument; }
     const Photo& photo() const { return mPhoto; }
@@ -44,7 +36,7 @@ class DocumentSession : public QObject {
     bool hasAlpha() const;
 
     const QString& path() const { return mPath; }
-    const QString& photoPath() const { return mPhotoPath; }
+    const QString& photoPath() const { return mPhoto.path; }
     // What the window calls it: the file's name, or the photo's.
     QString displayName() const;
     // Where a dialog should start, and under which name: beside the photo or the document.
@@ -66,16 +58,19 @@ class DocumentSession : public QObject {
     // Whether an EditSession is open: the document then is a preview, without a revision of its own.
     bool editing() const { return mEditing; }
     // Runs `work` now, or as soon as no EditSession is open (from the event loop, in the order in which it
-    // was asked for). Not at all where the session goes first.
+    // was asked for). Not at all where the session is retired first.
     void whenIdle(std::function<void()> work);
+    // The document has been closed: what waits is dropped, and so is all that comes later.
+    void retire();
 
     // Tells the session that `revision` is now in the file at `path`, with the step to which its colours were
     // rounded.
     void markSaved(uint64_t revision, const QString& path, std::optional<double> colourStep);
     // No state of the session is in a file.
     void markUnsaved();
-    // The photo has been found, or another one takes its place.
-    void setPhoto(Photo photo, const QString& path);
+    // The photo has been found, or another one takes its place: a step, after which the document says where
+    // it is from and embeds it. No EditSession is open.
+    void relinkPhoto(Photo photo, SourceInfo source);
 
   signals:
     void changed(const tessera::Change& change);
@@ -87,8 +82,9 @@ class DocumentSession : public QObject {
     friend class EditSession;
 
     uint64_t newRevision() { return ++mLastRevision; }
-    // Exchanges the document and its revision with `document` and `revision`.
-    void swapState(Document& document, uint64_t& revision, const Change& change);
+    // Exchanges the document and its revision with `document` and `revision`, and the photo with `photo`, if
+    // there is one.
+    void swapState(Document& document, uint64_t& revision, std::optional<Photo>& photo, const Change& change);
     void showPreview(PatchMesh mesh, const Change& change);
     void announce(const PatchMesh& before, const Change& change);
     void setEditing(bool editing);
@@ -97,11 +93,11 @@ class DocumentSession : public QObject {
     Document mDocument;
     Photo mPhoto;
     QString mPath;
-    QString mPhotoPath;
     uint64_t mLastRevision = 1;
     uint64_t mRevision = 1;
     uint64_t mSavedRevision = 1;
     bool mEditing = false;
+    bool mRetired = false;
     std::deque<std::function<void()>> mWaiting;
     History mHistory;
     Selection mSelection;

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/edit/drag_colour.h"
-#include "core/edit/edge_edits.h"
 #include "core/edit/reshape.h"
 
 namespace tessera {
@@ -108,13 +107,6 @@ Result<void> resetColours(DocumentSession& session) {
 
 Result<void> resetShape(DocumentSession& session) {
     return reset(session, QObject::tr("Reset Shape"), &tessera::resetShape);
-}
-
-Result<void> setBlur(DocumentSession& session, double sigmaStart, double sigmaEnd) {
-    const auto curves = selectedCurves(session);
-    if (!curves) return tl::unexpected<Error>(curves.error());
-    return apply(session, QObject::tr("Blur"),
-                 [&](PatchMesh& mesh) { return setBlur(mesh, *curves, sigmaStart, sigmaEnd); });
 }
 
 }  // namespace tessera

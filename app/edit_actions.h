@@ -24,7 +24,5 @@ Result<void> clearFlag(DocumentSession& session, PatchFlag flag);
 // all of the selected patches is another one since.
 Result<void> resetColours(DocumentSession& session);
 Result<void> resetShape(DocumentSession& session);
-// Of the selected curves.
-Result<void> setBlur(DocumentSession& session, double sigmaStart, double sigmaEnd);
 
 }  // namespace tessera

@@ -78,8 +78,7 @@ void EditSession::close() {
 }
 
 Result<Touched> applyEdit(DocumentSession& session, const QString& text, const MeshEdit& edit) {
-    if (session.editing())
-        return failure(ErrorCode::Usage, "another change is under way; finish it and try again");
+    if (session.editing()) return refusedMeanwhile();
     PatchMesh mesh = session.document().mesh;
     Result<Touched> touched = edit(mesh);
     if (touched && !touched->empty()) push(session, text, std::move(mesh), *touched);
@@ -88,6 +87,10 @@ Result<Touched> applyEdit(DocumentSession& session, const QString& text, const M
 
 tl::unexpected<Error> refused(const QString& why) {
     return failure(ErrorCode::Usage, why.toStdString());
+}
+
+tl::unexpected<Error> refusedMeanwhile() {
+    return refused(QObject::tr("Another change is under way; finish it and try again."));
 }
 
 Result<PatchSet> selectedPatches(const DocumentSession& session) {
@@ -101,13 +104,13 @@ Result<std::vector<EdgeId>> selectedCurves(const DocumentSession& session) {
     return session.selection().curves();
 }
 
-bool applyToDocument(DocumentSession& session, const QString& text, const Change& change,
-                     const std::function<void(Document&)>& edit) {
-    if (session.editing()) return false;
+Result<void> applyToDocument(DocumentSession& session, const QString& text, const Change& change,
+                             const std::function<void(Document&)>& edit) {
+    if (session.editing()) return refusedMeanwhile();
     Document after = session.document();
     edit(after);
     session.history().push(EditCommand(session, text, std::move(after), change));
-    return true;
+    return {};
 }
 
 }  // namespace tessera

@@ -25,6 +25,7 @@ class EditSession {
     ~EditSession() { cancel(); }
 
     bool open() const { return mOpen && mSession; }
+    const QString& text() const { return mText; }
     // The mesh as it was when the session was opened.
     const PatchMesh& start() const { return mStart; }
     // What preview() has changed of the start state.
@@ -54,14 +55,16 @@ Result<Touched> applyEdit(DocumentSession& session, const QString& text, const M
 
 // An edit that is not made, for a reason in the user's words (Usage).
 tl::unexpected<Error> refused(const QString& why);
+// The refusal of what cannot be done while an EditSession is open.
+tl::unexpected<Error> refusedMeanwhile();
 
 // What edits of the selection are about; a refusal where there is none.
 Result<PatchSet> selectedPatches(const DocumentSession& session);
 Result<std::vector<EdgeId>> selectedCurves(const DocumentSession& session);
 
-// A step that changes other parts of the document than its mesh; `change` says which. False, and nothing
-// done, while an EditSession is open.
-bool applyToDocument(DocumentSession& session, const QString& text, const Change& change,
-                     const std::function<void(Document&)>& edit);
+// A step that changes other parts of the document than its mesh; `change` says which. Refused while an
+// EditSession is open.
+Result<void> applyToDocument(DocumentSession& session, const QString& text, const Change& change,
+                             const std::function<void(Document&)>& edit);
 
 }  // namespace tessera

@@ -207,6 +207,30 @@ Result<ElementEdit> refitColours(const DocumentSession& session) {
     });
 }
 
+ElementEdit exactRecolouring(const QString& text, std::shared_ptr<const Recolourer> recolourer,
+                             const Recolouring& how, size_t patches) {
+    // Other edits take as long for one element.
+    constexpr size_t kPatchesOfAnElement = 40;
+    const auto run = [recolourer = std::move(recolourer), how](PatchMesh& mesh,
+                                                               Progress& progress) -> Result<EditedElements> {
+        progress.beginStage("", 1);
+        EditedElements edited{recolourer->apply(mesh, how), {}};
+        if (!progress.step(1)) return stopped();
+        return edited;
+    };
+    return {text, patches / kPatchesOfAnElement, run};
+}
+
+void finishNow(std::shared_ptr<EditSession> gesture, const ElementEdit& edit, const EditThen& then) {
+    const Result<void> made = gesture->preview([&](PatchMesh& mesh) {
+        Progress progress;
+        return edit.run(mesh, progress).map([](const EditedElements& edited) { return edited.touched; });
+    });
+    const Touched touched = made ? gesture->touched() : Touched{};
+    gesture->commit();
+    if (then) then(touched);
+}
+
 Result<QString> makeNow(DocumentSession& session, const Result<ElementEdit>& edit) {
     if (!edit) return tl::unexpected<Error>(edit.error());
     QString remark;

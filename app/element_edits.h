@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "app/edit_session.h"
 #include "core/base/progress.h"
+#include "core/edit/recolour.h"
 
 namespace tessera {
 
@@ -35,7 +37,20 @@ Result<ElementEdit> snapToFeature(const DocumentSession& session);
 // Of the selected patches, from the photo.
 Result<ElementEdit> refitColours(const DocumentSession& session);
 
+// What `recolourer`, which nobody else uses meanwhile, does to a set of so many patches, exactly.
+ElementEdit exactRecolouring(const QString& text, std::shared_ptr<const Recolourer> recolourer,
+                             const Recolouring& how, size_t patches);
+
 // Makes the edit as one step, here and now; returns its remark.
 Result<QString> makeNow(DocumentSession& session, const Result<ElementEdit>& edit);
+
+// Ends a gesture by one step, the edit of its start state, of which it has shown something near. Until then
+// it stays open and shows that. `then`, where given, hears what the step has touched: nothing where none was
+// made.
+using EditThen = std::function<void(const Touched&)>;
+using FinishGesture = std::function<void(std::shared_ptr<EditSession>, ElementEdit, EditThen)>;
+
+// Here and now. Workspace::finish() has a job do what takes longer.
+void finishNow(std::shared_ptr<EditSession> gesture, const ElementEdit& edit, const EditThen& then);
 
 }  // namespace tessera

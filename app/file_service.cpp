@@ -34,8 +34,9 @@ Result<Bytes> readBytes(const QString& path) {
     return bytes;
 }
 
-Photo makePhoto(Image image, std::shared_ptr<const Bytes> bytes) {
+Photo makePhoto(Image image, std::shared_ptr<const Bytes> bytes, const QString& path) {
     Photo photo;
+    photo.path = path;
     photo.bytes = std::move(bytes);
     photo.image = std::make_shared<const Image>(std::move(image));
     photo.pyramid = std::make_shared<const PicturePyramid>(toQImage(*photo.image));
@@ -53,13 +54,14 @@ std::shared_ptr<const Bytes> photoBeside(const QString& documentPath, const Sour
     return std::make_shared<const Bytes>(std::move(*bytes));
 }
 
-Result<OpenedFile> openDocument(const QString& path, Progress& progress) {
-    Result<Document> document = loadDocument(path.toStdString());
+Result<OpenedFile> openDocument(const QString& path, const Bytes& file, Progress& progress) {
+    Result<Document> document = decodeFile(file, path.toStdString());
     if (!document) return tl::unexpected<Error>(document.error());
-    OpenedFile opened{.document = std::move(*document), .photo = {}, .path = path, .photoPath = {}};
+    OpenedFile opened{.document = std::move(*document), .photo = {}, .path = path};
     if (!progress.step(.3)) return stopped();
     const SourceInfo& source = opened.document.source;
-    opened.photoPath = QFileInfo(path).dir().filePath(QString::fromStdString(source.fileName));
+    const QString photoPath = QFileInfo(path).dir().filePath(QString::fromStdString(source.fileName));
+    opened.photo.path = photoPath;
     auto bytes = opened.document.embeddedSource;
     if (!bytes) bytes = photoBeside(path, source);
     if (!bytes) return opened;
@@ -67,7 +69,7 @@ Result<OpenedFile> openDocument(const QString& path, Progress& progress) {
     auto photo = readImage(*bytes, source.fileName);
     const PatchMesh& mesh = opened.document.mesh;
     if (photo && photo->image.width() == mesh.width() && photo->image.height() == mesh.height())
-        opened.photo = makePhoto(std::move(photo->image), bytes);
+        opened.photo = makePhoto(std::move(photo->image), bytes, photoPath);
     return opened;
 }
 
@@ -75,10 +77,10 @@ Result<OpenedFile> openPicture(const QString& path, Bytes bytes, Progress& progr
     Result<LoadedImage> loaded = readImage(bytes, QFileInfo(path).fileName().toStdString());
     if (!loaded) return tl::unexpected<Error>(loaded.error());
     if (!progress.step(.7)) return stopped();
-    OpenedFile opened{.document = {}, .photo = {}, .path = {}, .photoPath = path};
+    OpenedFile opened;
     opened.document.source = std::move(loaded->source);
     opened.document.embeddedSource = std::make_shared<const Bytes>(std::move(bytes));
-    opened.photo = makePhoto(std::move(loaded->image), opened.document.embeddedSource);
+    opened.photo = makePhoto(std::move(loaded->image), opened.document.embeddedSource, path);
     return opened;
 }
 
@@ -89,7 +91,7 @@ Result<OpenedFile> openFile(const QString& path, Progress& progress) {
     Result<Bytes> bytes = readBytes(path);
     if (!bytes) return tl::unexpected<Error>(bytes.error());
     if (!progress.step(.1)) return stopped();
-    if (looksLikeDocument(*bytes)) return openDocument(path, progress);
+    if (looksLikeDocument(*bytes)) return openDocument(path, *bytes, progress);
     return openPicture(path, std::move(*bytes), progress);
 }
 

@@ -13,7 +13,6 @@ struct OpenedFile {
     Document document;  // without patches where the file is a picture
     Photo photo;        // of a document: the embedded one, or the one beside the file if it is still the same
     QString path;       // the document's; empty for a picture
-    QString photoPath;
 };
 
 // Reads and decodes; for workers. Fails with what core says of the file, or CannotRead.

@@ -70,7 +70,9 @@ void HeatMap::follow(const Change& change) {
 
 void HeatMap::start() {
     delete mJob;
-    if (!mWanted || !mSession || !mSession->hasMesh() || !mSession->photo().image) return;
+    if (!mWanted || !mSession || !mSession->hasMesh()) return;
+    // An undo may have taken it away again.
+    if (!mSession->photo().image) return emit ready({});
     mJob = new Job(JobKind::Render, tr("Measuring"), this);
     mJob->start<QImage>(
         [mesh = mSession->document().mesh, photo = mSession->photo().image](Progress& progress) {

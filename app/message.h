@@ -7,6 +7,8 @@
 
 namespace tessera {
 
+class DocumentSession;
+
 // With an action, the sentence asks whether to do it.
 struct Message {
     enum class Kind { Info, Error };
@@ -14,6 +16,11 @@ struct Message {
     QString text = {};
     QString actionText = {};
     std::function<void()> action = {};
+    // A question about something that would be lost: it is asked until it is answered, whatever else is said
+    // meanwhile.
+    bool keep = false;
+    // The document that a kept question is about and ends with; null for none.
+    const DocumentSession* about = nullptr;
 };
 
 // Core's messages are clauses that a command line puts after "error: "; a window shows them as sentences.

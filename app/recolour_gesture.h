@@ -1,9 +1,9 @@
-// A recolouring of the selection under a panel's sliders: shown as they move, one step at the end.
+// A recolouring under a panel's sliders: shown as they move, one step at the end.
 #pragma once
 
 #include <optional>
 
-#include "app/edit_session.h"
+#include "app/element_edits.h"
 #include "core/edit/recolour.h"
 
 namespace tessera {
@@ -14,23 +14,31 @@ class RecolourGesture {
   public:
     // No EditSession is open; the selection has patches.
     RecolourGesture(DocumentSession& session, const QString& text, const RecolourOptions& options = {})
-        : mEdit(session, text), mRecolourer(mEdit.start(), session.selection().patches(), options) {}
+        : RecolourGesture(session, text, session.selection().patches(), options) {}
+    // Of these patches instead of those selected.
+    RecolourGesture(DocumentSession& session, const QString& text, PatchSet patches,
+                    const RecolourOptions& options = {})
+        : mPatches(patches.size()),
+          mEdit(std::make_shared<EditSession>(session, text)),
+          mRecolourer(std::make_shared<Recolourer>(mEdit->start(), std::move(patches), options)) {}
 
     // Of the colours from before, not of those shown last. Shown nearly, in the time of a frame; commit()
     // then makes it exact.
     void show(const Recolouring& how) {
         mLast = how;
         // Recolourings have no way to fail.
-        (void)mEdit.preview([&](PatchMesh& mesh) { return mRecolourer.preview(mesh, how); });
+        (void)mEdit->preview([&](PatchMesh& mesh) { return mRecolourer->preview(mesh, how); });
     }
-    void commit() {
-        if (mLast) (void)mEdit.preview([&](PatchMesh& mesh) { return mRecolourer.apply(mesh, *mLast); });
-        mEdit.commit();
+    // The last thing that is done with the gesture.
+    void commit(const FinishGesture& finish) {
+        if (mLast) finish(mEdit, exactRecolouring(mEdit->text(), mRecolourer, *mLast, mPatches), {});
+        mEdit.reset();
     }
 
   private:
-    EditSession mEdit;
-    Recolourer mRecolourer;
+    size_t mPatches;
+    std::shared_ptr<EditSession> mEdit;
+    std::shared_ptr<Recolourer> mRecolourer;
     std::optional<Recolouring> mLast;
 };
 

@@ -66,11 +66,18 @@ std::optional<RecoveryInfo> RecoverySlot::info() const {
 Result<void> RecoverySlot::write(Document snapshot, const RecoveryInfo& info) {
     const Result<std::vector<uint8_t>> bytes = encodeDocument(snapshot);
     if (!bytes) return tl::unexpected<Error>(bytes.error());
+    const Result<void> written = replace(*bytes, info);
+    // Whoever forgot it meanwhile has left the files to us.
+    if (mForgotten) forget();
+    return written;
+}
+
+Result<void> RecoverySlot::replace(const std::vector<uint8_t>& bytes, const RecoveryInfo& info) {
     const std::lock_guard guard(mMutex);
     if (mForgotten) return {};
     const QString before = currentData();
     const QString name = mId + (before.endsWith("-a.tessera") ? "-b.tessera" : "-a.tessera");
-    if (auto written = writeFileAtomically(dataPath(name).toStdString(), *bytes); !written) return written;
+    if (auto written = writeFileAtomically(dataPath(name).toStdString(), bytes); !written) return written;
     const QByteArray manifest =
         QJsonDocument(QJsonObject{{"data", name},
                                   {"path", info.path},
@@ -84,8 +91,9 @@ Result<void> RecoverySlot::write(Document snapshot, const RecoveryInfo& info) {
 }
 
 void RecoverySlot::forget() {
-    const std::lock_guard guard(mMutex);
     mForgotten = true;
+    const std::unique_lock lock(mMutex, std::try_to_lock);
+    if (!lock) return;
     QFile::remove(manifestPath());
     for (const char* end : {"-a.tessera", "-b.tessera"}) QFile::remove(dataPath(mId + end));
 }

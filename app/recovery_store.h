@@ -11,6 +11,7 @@
 #include <QDateTime>
 #include <QLockFile>
 #include <QString>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -36,7 +37,7 @@ class RecoverySlot {
 
     // Puts a snapshot in the place of the one before. Of no effect after forget().
     Result<void> write(Document snapshot, const RecoveryInfo& info);
-    // Removes what is there, for good.
+    // Removes what is there, for good. Does not wait for a write under way, which then removes what it wrote.
     void forget();
 
     const QString& id() const { return mId; }
@@ -50,10 +51,12 @@ class RecoverySlot {
     // The name of the data file that the manifest points to; empty for none.
     QString currentData() const;
 
+    Result<void> replace(const std::vector<uint8_t>& bytes, const RecoveryInfo& info);
+
     QString mFolder;
     QString mId;
-    std::mutex mMutex;
-    bool mForgotten = false;
+    std::mutex mMutex;  // of the files
+    std::atomic<bool> mForgotten = false;
 };
 
 class RecoveryStore {

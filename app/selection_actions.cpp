@@ -15,10 +15,10 @@ const NamedSelection* findStored(const Document& document, const QString& name) 
     return found == document.selections.end() ? nullptr : &*found;
 }
 
-void editStored(DocumentSession& session, const QString& text,
-                const std::function<void(std::vector<NamedSelection>&)>& edit) {
-    applyToDocument(session, text, {.selections = true},
-                    [&](Document& document) { edit(document.selections); });
+Result<void> editStored(DocumentSession& session, const QString& text,
+                        const std::function<void(std::vector<NamedSelection>&)>& edit) {
+    return applyToDocument(session, text, {.selections = true},
+                           [&](Document& document) { edit(document.selections); });
 }
 
 }  // namespace
@@ -71,10 +71,10 @@ PatchSet selectionsPatches(const DocumentSession& session) {
     return patchSet(std::move(found));
 }
 
-void storeSelection(DocumentSession& session, const QString& name) {
+Result<void> storeSelection(DocumentSession& session, const QString& name) {
     const PatchSet& patches = session.selection().patches();
-    if (name.isEmpty() || patches.empty()) return;
-    editStored(session, QObject::tr("Store Selection"), [&](std::vector<NamedSelection>& stored) {
+    if (name.isEmpty() || patches.empty()) return refused(QObject::tr("Select patches first."));
+    return editStored(session, QObject::tr("Store Selection"), [&](std::vector<NamedSelection>& stored) {
         const NamedSelection selection{name.toStdString(), patches};
         const auto old = std::find_if(stored.begin(), stored.end(),
                                       [&](const NamedSelection& s) { return s.name == selection.name; });
@@ -93,22 +93,24 @@ void recallSelection(DocumentSession& session, const QString& name, SelectMode m
     session.selection().setPatches(combined(session.selection().patches(), found, mode));
 }
 
-void removeStoredSelection(DocumentSession& session, const QString& name) {
-    if (!findStored(session.document(), name)) return;
-    editStored(session, QObject::tr("Remove Stored Selection"), [&](std::vector<NamedSelection>& stored) {
-        std::erase_if(stored, [&](const NamedSelection& s) { return s.name == name.toStdString(); });
-    });
+Result<void> removeStoredSelection(DocumentSession& session, const QString& name) {
+    if (!findStored(session.document(), name)) return {};
+    return editStored(
+        session, QObject::tr("Remove Stored Selection"), [&](std::vector<NamedSelection>& stored) {
+            std::erase_if(stored, [&](const NamedSelection& s) { return s.name == name.toStdString(); });
+        });
 }
 
-bool renameStoredSelection(DocumentSession& session, const QString& from, const QString& to) {
-    if (to.isEmpty() || !findStored(session.document(), from)) return false;
-    if (from == to) return true;
-    if (findStored(session.document(), to)) return false;
-    editStored(session, QObject::tr("Rename Stored Selection"), [&](std::vector<NamedSelection>& stored) {
-        for (NamedSelection& s : stored)
-            if (s.name == from.toStdString()) s.name = to.toStdString();
-    });
-    return true;
+Result<void> renameStoredSelection(DocumentSession& session, const QString& from, const QString& to) {
+    if (from == to || !findStored(session.document(), from)) return {};
+    if (to.isEmpty()) return refused(QObject::tr("A stored selection needs a name."));
+    if (findStored(session.document(), to))
+        return refused(QObject::tr("There is a selection named “%1” already.").arg(to));
+    return editStored(session, QObject::tr("Rename Stored Selection"),
+                      [&](std::vector<NamedSelection>& stored) {
+                          for (NamedSelection& s : stored)
+                              if (s.name == from.toStdString()) s.name = to.toStdString();
+                      });
 }
 
 }  // namespace tessera

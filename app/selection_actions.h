@@ -20,12 +20,12 @@ void selectSimilar(DocumentSession& session, const WandOptions& options);
 PatchSet selectionsPatches(const DocumentSession& session);
 
 // Named selections are parts of the document: each of these is a step of the history. Names are not empty and
-// all different; storing under a name that exists replaces it.
-void storeSelection(DocumentSession& session, const QString& name);
+// all different; storing under a name that exists replaces it. What fails changes nothing.
+Result<void> storeSelection(DocumentSession& session, const QString& name);
 // Selects what is alive and selectable of it.
 void recallSelection(DocumentSession& session, const QString& name, SelectMode mode = SelectMode::Replace);
-void removeStoredSelection(DocumentSession& session, const QString& name);
-// False where `to` is taken or empty.
-bool renameStoredSelection(DocumentSession& session, const QString& from, const QString& to);
+Result<void> removeStoredSelection(DocumentSession& session, const QString& name);
+// Fails where `to` is taken or empty.
+Result<void> renameStoredSelection(DocumentSession& session, const QString& from, const QString& to);
 
 }  // namespace tessera

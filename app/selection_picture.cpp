@@ -7,6 +7,7 @@
 #include "app/picture_pyramid.h"
 #include "core/base/parallel.h"
 #include "core/export/rasterize.h"
+#include "core/mesh/patch_query.h"
 
 namespace tessera {
 
@@ -46,21 +47,30 @@ Image averaged(const Image& samples, const std::vector<PixelOwner>& owners,
     return result;
 }
 
-}  // namespace
-
-QImage selectionPicture(const DocumentSession& session) {
-    if (!session.hasMesh()) return {};
-    const PatchMesh& mesh = session.document().mesh;
-    const PatchSet& set = session.selection().patches();
+Result<QImage> draw(const PatchMesh& mesh, const PatchSet& set, Progress& progress) {
+    progress.beginStage("drawing", 1);
     if (set.empty())
-        return toQImage(rasterize(mesh, wholePicture(mesh, {1, 1}), {.samples = kSide * kSide}).value());
+        return rasterize(mesh, wholePicture(mesh, {1, 1}), {.samples = kSide * kSide}, &progress)
+            .map(toQImage);
     const View view = pixelsOf(mesh, set);
     View fine = view;
     fine.scale *= kSide;
     fine.width *= kSide;
     fine.height *= kSide;
-    const Image samples = rasterize(mesh, fine).value();
-    return toQImage(averaged(samples, locatePixels(mesh, fine), membership(mesh, set), view));
+    return rasterize(mesh, fine, {}, &progress).map([&](const Image& samples) {
+        return toQImage(averaged(samples, locatePixels(mesh, fine), membership(mesh, set), view));
+    });
+}
+
+}  // namespace
+
+Job* startSelectionPictureJob(QObject* owner, PatchMesh mesh, PatchSet set,
+                              std::function<void(Result<QImage>)> deliver) {
+    auto* job = new Job(JobKind::Copy, QObject::tr("Copying the picture"), owner);
+    job->start<QImage>([mesh = std::move(mesh),
+                        set = std::move(set)](Progress& progress) { return draw(mesh, set, progress); },
+                       std::move(deliver));
+    return job;
 }
 
 }  // namespace tessera

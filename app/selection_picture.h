@@ -3,12 +3,15 @@
 
 #include <QImage>
 
-#include "app/document_session.h"
+#include "app/jobs/job.h"
+#include "core/edit/patch_set.h"
+#include "core/mesh/patch_mesh.h"
 
 namespace tessera {
 
-// At one pixel for each of the picture's, just as large as the selection, transparent beside it
-// (anti-aliased); the whole picture where no patch is selected. Null where there are no patches.
-QImage selectionPicture(const DocumentSession& session);
+// At one pixel for each of the picture's, just as large as the set, transparent beside it (anti-aliased); the
+// whole picture where the set is empty. The mesh has patches.
+Job* startSelectionPictureJob(QObject* owner, PatchMesh mesh, PatchSet set,
+                              std::function<void(Result<QImage>)> deliver);
 
 }  // namespace tessera

@@ -6,6 +6,7 @@
 #include <QStandardPaths>
 
 #include "app/history.h"
+#include "core/edit/enclosed_region.h"
 #include "core/vectorize/quality.h"
 #include "core/vectorize/settings.h"
 
@@ -180,10 +181,6 @@ void Settings::setKey(const QString& actionId, const std::optional<QKeySequence>
         mSettings.remove("keys/" + actionId);
 }
 
-void Settings::clearKeys() {
-    mSettings.remove("keys");
-}
-
 KeyPreset Settings::keyPreset() const {
     return named(kKeyPresets, mSettings.value("window/keyPreset").toString()).value_or(KeyPreset::Tessera);
 }
@@ -235,6 +232,7 @@ ToolOptions Settings::toolOptions() const {
     number("wandTolerance", options.wand.tolerance, 0, 2);
     flag("wandContiguous", options.wand.contiguous);
     flag("wandStopsAtFeatures", options.wand.stopAtFeatures);
+    number("gapPx", options.gapPx, 0, kMostGapPx);
     options.eyedropper =
         named(kColourSources, mSettings.value("tools/eyedropper").toString()).value_or(options.eyedropper);
     number("brushRadiusPx", options.brushRadiusPx, .1, 1e4);
@@ -243,6 +241,7 @@ ToolOptions Settings::toolOptions() const {
     flag("brushKeepsShading", options.brushKeepsShading);
     number("gradientStrength", options.gradientStrength, 0, 1);
     number("featherPx", options.featherPx, 0, 1e4);
+    flag("allHandles", options.allHandles);
     flag("refitAfterReshape", options.refitAfterReshape);
     flag("wholeFeatures", options.wholeFeatures);
     return options;
@@ -262,6 +261,7 @@ void Settings::setToolOptions(const ToolOptions& options) {
     put("wandTolerance", options.wand.tolerance);
     put("wandContiguous", options.wand.contiguous);
     put("wandStopsAtFeatures", options.wand.stopAtFeatures);
+    put("gapPx", options.gapPx);
     put("eyedropper", nameOf(kColourSources, options.eyedropper));
     put("brushRadiusPx", options.brushRadiusPx);
     put("brushHardness", options.brushHardness);
@@ -269,6 +269,7 @@ void Settings::setToolOptions(const ToolOptions& options) {
     put("brushKeepsShading", options.brushKeepsShading);
     put("gradientStrength", options.gradientStrength);
     put("featherPx", options.featherPx);
+    put("allHandles", options.allHandles);
     put("refitAfterReshape", options.refitAfterReshape);
     put("wholeFeatures", options.wholeFeatures);
 }

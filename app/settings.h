@@ -61,7 +61,6 @@ class Settings {
     std::optional<QKeySequence> key(const QString& actionId) const;
     // None goes back to the preset's.
     void setKey(const QString& actionId, const std::optional<QKeySequence>& key);
-    void clearKeys();
 
     // 0 is never.
     int autosaveSeconds() const;

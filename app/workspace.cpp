@@ -1,4 +1,5 @@
-// See workspace.h. Vectorizing, saving and exporting are in workspace_jobs.cpp.
+// See workspace.h. Vectorizing, saving and exporting are in workspace_jobs.cpp, closing in
+// workspace_closing.cpp.
 #include "app/workspace.h"
 
 #include <QFileInfo>
@@ -8,6 +9,16 @@
 #include "app/jobs/open_job.h"
 
 namespace tessera {
+
+namespace {
+
+// The one file that a path leads to, whether it is there yet or not.
+QString fileAt(const QString& path) {
+    const QFileInfo info(path);
+    return info.exists() ? info.canonicalFilePath() : info.absoluteFilePath();
+}
+
+}  // namespace
 
 Workspace::Workspace(QObject* parent) : QObject(parent) {}
 
@@ -33,10 +44,8 @@ void Workspace::moveSession(int from, int to) {
 }
 
 void Workspace::open(const QString& path) {
+    if (DocumentSession* session = sessionAt(path)) return setCurrent(session);
     const QString absolute = QFileInfo(path).absoluteFilePath();
-    for (DocumentSession* session : std::as_const(mSessions))
-        if (!session->path().isEmpty() && QFileInfo(session->path()).absoluteFilePath() == absolute)
-            return setCurrent(session);
     if (mOpening.contains(absolute)) return;
     mOpening.insert(absolute);
     const auto read = [path](Progress& progress) { return openFile(path, progress); };
@@ -48,6 +57,17 @@ void Workspace::open(const QString& path) {
                                 emit fileUsed(path);
                             });
     track(job, nullptr);
+}
+
+DocumentSession* Workspace::sessionAt(const QString& path) const {
+    const QString file = fileAt(path);
+    for (DocumentSession* session : mSessions) {
+        if (!session->path().isEmpty() && fileAt(session->path()) == file) return session;
+        for (const RunningJob& running : mJobs)
+            if (running.session == session && !running.path.isEmpty() && fileAt(running.path) == file)
+                return session;
+    }
+    return nullptr;
 }
 
 void Workspace::paste(const QImage& picture) {
@@ -68,7 +88,7 @@ void Workspace::openRecovered(const QString& dataPath, const QString& path, cons
         startOpenJob(this, name, read, [=, this, adopted = std::move(adopted)](Result<OpenedFile> opened) {
             if (!opened) return report(opened.error());
             opened->path = path;
-            opened->photoPath = photoPath;
+            opened->photo.path = photoPath;
             DocumentSession* session = adopt(std::move(*opened));
             session->markUnsaved();
             adopted(*session);
@@ -78,7 +98,7 @@ void Workspace::openRecovered(const QString& dataPath, const QString& path, cons
 
 DocumentSession* Workspace::adopt(OpenedFile opened) {
     auto* session = new DocumentSession(std::move(opened.document), std::move(opened.photo),
-                                        std::move(opened.path), std::move(opened.photoPath), this);
+                                        std::move(opened.path), this);
     session->history().setMemoryLimit(mHistoryLimit);
     mSessions.append(session);
     setCurrent(session);
@@ -114,70 +134,18 @@ void Workspace::applyRelinked(DocumentSession& session, OpenedFile opened, const
                           .arg(session.width())
                           .arg(session.height()));
     const QPointer<DocumentSession> target = &session;
-    const auto apply = [target, photo = opened.photo, path] {
-        if (target) target->whenIdle([target, photo, path] { target->setPhoto(photo, path); });
+    const auto apply = [target, photo = opened.photo, source = opened.document.source] {
+        if (target) target->whenIdle([target, photo, source] { target->relinkPhoto(photo, source); });
     };
     const std::string& known = session.document().source.sha256;
     if (known.empty() || known == opened.document.source.sha256) return apply();
-    emit said({.kind = Message::Kind::Info,
-               .text = tr("“%1” is not the picture that the document was made from.").arg(name),
-               .actionText = tr("Use It Anyway"),
-               .action = apply});
-}
-
-void Workspace::close(DocumentSession* session, const AskToClose& ask, std::function<void(bool)> then) {
-    const QPointer<DocumentSession> target = session;
-    const auto finished = [then](bool closed) {
-        if (then) then(closed);
-    };
-    stopAll(JobKind::Edit, session);
-    session->whenIdle([this, target, ask, finished] {
-        if (Job* job = find(JobKind::Save, target)) {
-            // It may make the question needless.
-            connect(job, &Job::finished, this, [this, target, ask, finished] {
-                if (target) close(target, ask, finished);
-            });
-            return;
-        }
-        if (target->modified()) {
-            const CloseAnswer answer = ask(*target);
-            if (!target || answer.kind == CloseAnswer::Kind::Cancel) return finished(false);
-            const QString path = answer.path.isEmpty() ? target->path() : answer.path;
-            if (answer.kind == CloseAnswer::Kind::Save) {
-                if (path.isEmpty()) return finished(false);
-                return save(target, path, answer.embedPhoto, [this, target, ask, finished](bool written) {
-                    if (!written) return finished(false);
-                    if (target) close(target, ask, finished);
-                });
-            }
-        }
-        remove(target);
-        finished(true);
-    });
-}
-
-void Workspace::closeAll(const AskToClose& ask, std::function<void(bool)> then) {
-    if (mSessions.isEmpty()) return then(true);
-    close(mSessions.last(), ask, [this, ask, then = std::move(then)](bool closed) {
-        if (!closed) return then(false);
-        closeAll(ask, then);
-    });
-}
-
-void Workspace::remove(DocumentSession* session) {
-    stopAll(JobKind::Vectorize, session);
-    stopAll(JobKind::Relink, session);
-    stopAll(JobKind::Drafts, session);
-    const qsizetype at = mSessions.indexOf(session);
-    mSessions.removeAt(at);
-    // The neighbour on the right takes its place, or else the one on the left.
-    if (session == mCurrent)
-        setCurrent(mSessions.isEmpty() ? nullptr : mSessions[std::min(at, mSessions.size() - 1)]);
-    emit sessionClosed(session);
-    // A later session could have the same address.
-    for (RunningJob& running : mJobs)
-        if (running.session == session) running.session = nullptr;
-    session->deleteLater();
+    emit said(
+        {.kind = Message::Kind::Info,
+         .text = tr("“%1” is not the picture that “%2” was made from.").arg(name, session.displayName()),
+         .actionText = tr("Use It Anyway"),
+         .action = apply,
+         .keep = true,
+         .about = &session});
 }
 
 void Workspace::setHistoryLimit(size_t bytes) {

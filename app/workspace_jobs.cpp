@@ -7,7 +7,9 @@
 #include "app/jobs/draft_job.h"
 #include "app/jobs/element_edit_job.h"
 #include "app/jobs/save_job.h"
+#include "app/selection_picture.h"
 #include "app/workspace.h"
+#include "core/image/image_io.h"
 
 namespace tessera {
 
@@ -76,9 +78,12 @@ void Workspace::applyVectorized(DocumentSession& session, uint64_t revision, Vec
     };
     if (session.revision() != revision) {
         emit said({.kind = Message::Kind::Info,
-                   .text = tr("The document has changed since this vectorization was started."),
+                   .text = tr("“%1” has changed since this vectorization of it was started.")
+                               .arg(session.displayName()),
                    .actionText = tr("Use It Anyway"),
-                   .action = apply});
+                   .action = apply,
+                   .keep = true,
+                   .about = &session});
         return;
     }
     apply();
@@ -93,6 +98,13 @@ void Workspace::save(DocumentSession* session, const QString& path, bool embedPh
                      std::function<void(bool)> then) {
     if (!session->hasMesh()) return;
     session->whenIdle([this, session, path, embedPhoto, then = std::move(then)] {
+        if (const DocumentSession* other = sessionAt(path); other && other != session) {
+            emit said({.kind = Message::Kind::Error,
+                       .text = tr("“%1” is open in another tab; close it there, or save under another name.")
+                                   .arg(QFileInfo(path).fileName())});
+            if (then) then(false);
+            return;
+        }
         Job* const job = find(JobKind::Save, session);
         if (!job) return startSave(*session, path, embedPhoto, then);
         // The one that runs may hold an older state: look again when it has ended.
@@ -108,13 +120,10 @@ void Workspace::save(DocumentSession* session, const QString& path, bool embedPh
 void Workspace::startSave(DocumentSession& session, const QString& path, bool embedPhoto,
                           std::function<void(bool)> then) {
     Document snapshot = session.document();
-    if (!embedPhoto)
-        snapshot.embeddedSource.reset();
-    else if (session.photo().bytes)
-        snapshot.embeddedSource = session.photo().bytes;
+    if (session.photo().bytes) snapshot.embeddedSource = session.photo().bytes;
     const QPointer<DocumentSession> target = &session;
     const uint64_t revision = session.revision();
-    Job* job = startSaveJob(this, std::move(snapshot), path,
+    Job* job = startSaveJob(this, std::move(snapshot), path, embedPhoto ? QString() : session.photoPath(),
                             [this, target, revision, path, then = std::move(then)](Result<Saved> written) {
                                 if (!written) {
                                     report(written.error());
@@ -128,11 +137,22 @@ void Workspace::startSave(DocumentSession& session, const QString& path, bool em
                                 }
                                 if (then) then(true);
                             });
-    track(job, &session);
+    track(job, &session, path);
+}
+
+bool Workspace::canExportAgain() const {
+    return mCurrent && mCurrent->hasMesh() && mLastExports.contains(mCurrent) && !running(JobKind::Export);
+}
+
+void Workspace::exportAgain() {
+    if (canExportAgain()) exportPicture(mLastExports.value(mCurrent));
 }
 
 void Workspace::exportPicture(const ExportRequest& request) {
     if (!mCurrent || !mCurrent->hasMesh() || running(JobKind::Export)) return;
+    if (const auto format = pictureFormatFor(request.path.toStdString()); !format)
+        return report(format.error());
+    mLastExports[mCurrent] = request;
     const QPointer<DocumentSession> target = mCurrent;
     mCurrent->whenIdle([this, target, request] {
         Job* job = startExportJob(
@@ -145,34 +165,51 @@ void Workspace::exportPicture(const ExportRequest& request) {
     });
 }
 
+void Workspace::drawSelection(std::function<void(const QImage&)> then) {
+    if (!mCurrent || !mCurrent->hasMesh()) return;
+    for (const Job* job : jobs({JobKind::Copy}, nullptr)) drop(job);
+    Job* job = startSelectionPictureJob(this, mCurrent->document().mesh, mCurrent->selection().patches(),
+                                        [this, then = std::move(then)](Result<QImage> picture) {
+                                            picture ? then(*picture) : report(picture.error());
+                                        });
+    track(job, mCurrent);
+}
+
 void Workspace::edit(const Result<ElementEdit>& edit) {
     if (!mCurrent) return;
-    if (edit && edit->count > kEditedAtOnce && !mCurrent->editing()) return startEdit(*edit);
+    if (edit && edit->count > kEditedAtOnce && !mCurrent->editing())
+        return startEdit(std::make_shared<EditSession>(*mCurrent, edit->text), *edit, {});
     const Result<QString> made = makeNow(*mCurrent, edit);
     const QString words = made ? *made : asSentence(made.error().message);
     if (!words.isEmpty()) emit said({.kind = Message::Kind::Info, .text = words});
 }
 
-void Workspace::startEdit(ElementEdit edit) {
-    // It goes with the job, where that goes first, and gives back the state before.
-    const auto open = std::make_shared<EditSession>(*mCurrent, edit.text);
+void Workspace::finish(std::shared_ptr<EditSession> gesture, ElementEdit edit, EditThen then) {
+    if (!mCurrent || edit.count <= kEditedAtOnce) return finishNow(std::move(gesture), edit, then);
+    startEdit(std::move(gesture), std::move(edit), std::move(then));
+}
+
+void Workspace::startEdit(std::shared_ptr<EditSession> gesture, ElementEdit edit, EditThen then) {
     const QPointer<DocumentSession> target = mCurrent;
-    const auto deliver = [this, open, target, text = edit.text](Result<EditedMesh> result) {
-        open->cancel();
+    const PatchMesh start = gesture->start();
+    const auto deliver = [this, gesture = std::move(gesture), then = std::move(then), target,
+                          text = edit.text](Result<EditedMesh> result) {
+        gesture->cancel();
         if (!target) return;
-        if (!result) {
-            if (result.error().code == ErrorCode::Stopped) return;
+        Result<Touched> touched = Touched{};
+        if (result) {
+            touched = applyEdit(*target, text, [&](PatchMesh& mesh) -> Result<Touched> {
+                mesh = std::move(result->mesh);
+                return std::move(result->edited.touched);
+            });
+            if (!result->edited.remark.isEmpty())
+                emit said({.kind = Message::Kind::Info, .text = result->edited.remark});
+        } else if (result.error().code != ErrorCode::Stopped) {
             emit said({.kind = Message::Kind::Info, .text = asSentence(result.error().message)});
-            return;
         }
-        (void)applyEdit(*target, text, [&](PatchMesh& mesh) -> Result<Touched> {
-            mesh = std::move(result->mesh);
-            return std::move(result->edited.touched);
-        });
-        if (!result->edited.remark.isEmpty())
-            emit said({.kind = Message::Kind::Info, .text = result->edited.remark});
+        if (then) then(touched.value_or(Touched{}));
     };
-    track(startElementEditJob(this, open->start(), std::move(edit), deliver), mCurrent);
+    track(startElementEditJob(this, start, std::move(edit), deliver), mCurrent);
 }
 
 Job* Workspace::find(JobKind kind, const DocumentSession* session) const {
@@ -187,8 +224,8 @@ void Workspace::cancel() {
     emit jobChanged();
 }
 
-void Workspace::track(Job* job, const DocumentSession* session) {
-    mJobs.append({job, session});
+void Workspace::track(Job* job, const DocumentSession* session, const QString& path) {
+    mJobs.append({job, session, path});
     connect(job, &Job::progressed, this, &Workspace::jobChanged);
     connect(job, &Job::finished, this, [this, job] {
         mJobs.removeIf([&](const RunningJob& running) { return running.job == job; });
@@ -198,13 +235,12 @@ void Workspace::track(Job* job, const DocumentSession* session) {
 }
 
 void Workspace::stopAll(JobKind kind, const DocumentSession* session) {
-    const QList<RunningJob> jobs = mJobs;
-    for (const RunningJob& running : jobs) {
-        if (running.job->kind() != kind || running.session != session) continue;
-        mJobs.removeIf([&](const RunningJob& r) { return r.job == running.job; });
-        running.job->disconnect(this);
-        delete running.job;  // drops its result too
-    }
+    for (const Job* job : jobs({kind}, session)) drop(job);
+}
+
+void Workspace::drop(const Job* job) {
+    mJobs.removeIf([&](const RunningJob& running) { return running.job == job; });
+    delete job;
     emit jobChanged();
 }
 

@@ -26,8 +26,9 @@ struct ActionSpec {
 
 // In menu order.
 const ActionSpec kActions[] = {
+    {ActionId::New, "new", "&File", "&New", "Ctrl+N", "Begin with another picture, in a tab of its own"},
     {ActionId::Open, "open", "&File", "&Open…", "Ctrl+O", "Open a photo or a Tessera document", 0, "open"},
-    {ActionId::Paste, "paste", "&File", "&New from Clipboard", "Ctrl+V",
+    {ActionId::Paste, "paste", "&File", "New from Clip&board", "Ctrl+V",
      "Make a document of the picture in the clipboard", 0, "paste"},
     {ActionId::Close, "close", "&File", "&Close", "Ctrl+W", "Close the document", kEndsGroup},
     {ActionId::Save, "save", "&File", "&Save", "Ctrl+S", "Save the vector image", 0, "save"},

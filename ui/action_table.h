@@ -16,6 +16,7 @@ class QWidget;
 namespace tessera {
 
 enum class ActionId {
+    New,
     Open,
     Paste,
     Close,

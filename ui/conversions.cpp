@@ -1,6 +1,8 @@
 // See conversions.h.
 #include "ui/conversions.h"
 
+#include <QMimeData>
+#include <QUrl>
 #include <algorithm>
 
 namespace tessera {
@@ -12,6 +14,13 @@ QColor toQColor(glm::dvec3 srgb) {
 
 glm::dvec3 toSrgb(const QColor& colour) {
     return glm::dvec3(colour.red(), colour.green(), colour.blue()) / 255.;
+}
+
+QStringList localFiles(const QMimeData* data) {
+    QStringList files;
+    for (const QUrl& url : data->urls())
+        if (url.isLocalFile()) files.append(url.toLocalFile());
+    return files;
 }
 
 }  // namespace tessera

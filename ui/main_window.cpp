@@ -81,6 +81,7 @@ MainWindow::~MainWindow() {
 void MainWindow::connectActions() {
     const ActionTable& a = *mActions;
     const auto on = [&](ActionId id, auto slot) { connect(a[id], &QAction::triggered, this, slot); };
+    on(ActionId::New, [this] { mWorkspace.setCurrent(nullptr); });
     on(ActionId::Open, [this] { chooseAndOpen(); });
     on(ActionId::Paste, [this] { paste(); });
     on(ActionId::Copy, [this] { copy(); });
@@ -88,7 +89,7 @@ void MainWindow::connectActions() {
     on(ActionId::Save, [this] { save(); });
     on(ActionId::SaveAs, [this] { chooseAndSave(); });
     on(ActionId::Export, [this] { chooseAndExport(); });
-    on(ActionId::ExportAgain, [this] { exportAgain(); });
+    on(ActionId::ExportAgain, [this] { mWorkspace.exportAgain(); });
     on(ActionId::Relink, [this] { chooseAndRelink(); });
     on(ActionId::Preferences, [this] { showPreferences(); });
     on(ActionId::Quit, [this] { close(); });
@@ -154,6 +155,7 @@ void MainWindow::connectWorkspace() {
     connect(&mWorkspace, &Workspace::sessionAdded, this,
             [this](DocumentSession* session) { welcome(*session); });
     connect(&mWorkspace, &Workspace::said, mMessages, &MessageBar::show);
+    connect(&mWorkspace, &Workspace::sessionClosed, mMessages, &MessageBar::forget);
     connect(&mWorkspace, &Workspace::fileUsed, this, [this](const QString& path) {
         mSettings.addRecentFile(path);
         mSettings.setFolder(QFileInfo(path).absolutePath());
@@ -171,11 +173,13 @@ void MainWindow::connectWorkspace() {
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::zoomClicked, this, [this] { mCanvas->zoomTo(1); });
     connect(mTabs, &QTabBar::currentChanged, this, [this](int tab) {
-        if (tab >= 0 && tab < mWorkspace.sessions().size()) mWorkspace.setCurrent(mWorkspace.sessions()[tab]);
+        if (tab >= 0) mWorkspace.setCurrent(mWorkspace.sessions().value(tab));
     });
     connect(mTabs, &QTabBar::tabCloseRequested, this,
             [this](int tab) { closeSession(mWorkspace.sessions().value(tab)); });
     connect(mTabs, &QTabBar::tabMoved, &mWorkspace, &Workspace::moveSession);
+    // The tab of the start page stays behind those of documents.
+    connect(mTabs, &QTabBar::tabMoved, this, &MainWindow::showTabs, Qt::QueuedConnection);
 }
 
 void MainWindow::connectCanvas() {
@@ -219,6 +223,9 @@ void MainWindow::connectPanels() {
     connect(mCanvas, &CanvasWidget::draftLeft, this, &MainWindow::leaveDraft);
     connect(mCanvas, &CanvasWidget::draftPressed, this, &MainWindow::explainDraft);
     connect(&mDrafts, &DraftPreview::changed, this, &MainWindow::showDraft);
+    mTools.setFinish([this](std::shared_ptr<EditSession> gesture, ElementEdit edit, EditThen then) {
+        mWorkspace.finish(std::move(gesture), std::move(edit), std::move(then));
+    });
     mRecolour->setToolOptions(mTools);
     mPalette->setToolOptions(mTools);
     mSelection->setToolOptions(mTools);
@@ -247,7 +254,7 @@ void MainWindow::connectPanels() {
 
 void MainWindow::adoptSession() {
     DocumentSession* session = mWorkspace.session();
-    mMessages->hide();
+    mMessages->setDocument(session);
     for (const ActionId id : {ActionId::ShowOriginal, ActionId::ShowHeatMap})
         (*mActions)[id]->setChecked(false);
     mTools.setSession(session);
@@ -299,15 +306,22 @@ void MainWindow::showBeginning() {
 void MainWindow::showTabs() {
     const QSignalBlocker quiet(mTabs);
     const auto& sessions = mWorkspace.sessions();
-    while (mTabs->count() > sessions.size()) mTabs->removeTab(mTabs->count() - 1);
+    // The start page has a tab while there are documents to go back to.
+    const bool startTab = !mWorkspace.session() && !sessions.isEmpty();
+    const qsizetype count = sessions.size() + (startTab ? 1 : 0);
+    while (mTabs->count() > count) mTabs->removeTab(mTabs->count() - 1);
+    while (mTabs->count() < count) mTabs->addTab({});
     for (int i = 0; i < sessions.size(); ++i) {
-        if (i == mTabs->count()) mTabs->addTab({});
         const DocumentSession* session = sessions[i];
         mTabs->setTabText(i, session->displayName() + (session->modified() ? " •" : ""));
         mTabs->setTabToolTip(i, session->path().isEmpty() ? session->photoPath() : session->path());
     }
-    if (mWorkspace.session()) mTabs->setCurrentIndex(int(sessions.indexOf(mWorkspace.session())));
-    mTabs->setVisible(sessions.size() > 1);
+    if (startTab) {
+        mTabs->setTabText(mTabs->count() - 1, tr("New"));
+        mTabs->setTabToolTip(mTabs->count() - 1, {});
+    }
+    mTabs->setCurrentIndex(startTab ? mTabs->count() - 1 : int(sessions.indexOf(mWorkspace.session())));
+    mTabs->setVisible(count > 1);
 }
 
 void MainWindow::showView() {
@@ -331,12 +345,14 @@ void MainWindow::updateActions() {
     };
     enable({ActionId::Save, ActionId::SaveAs}, hasMesh && !mWorkspace.running(JobKind::Save));
     enable({ActionId::Export}, hasMesh && !mWorkspace.running(JobKind::Export));
-    enable({ActionId::ExportAgain}, hasMesh && mLastExport && !mWorkspace.running(JobKind::Export));
+    enable({ActionId::ExportAgain}, mWorkspace.canExportAgain());
     enable({ActionId::Vectorize}, mWorkspace.canVectorize());
     enable({ActionId::Cancel}, mWorkspace.currentJob());
-    enable({ActionId::Close, ActionId::ZoomIn, ActionId::ZoomOut, ActionId::ZoomFit, ActionId::Zoom100,
-            ActionId::PreviousZoom},
-           session);
+    enable({ActionId::New}, session);
+    enable({ActionId::Close}, !mWorkspace.sessions().isEmpty());
+    enable(
+        {ActionId::ZoomIn, ActionId::ZoomOut, ActionId::ZoomFit, ActionId::Zoom100, ActionId::PreviousZoom},
+        session);
     enable({ActionId::ShowFeatures, ActionId::ShowEdges, ActionId::ShowControlPoints, ActionId::ShowCentres,
             ActionId::ShowBlur, ActionId::ShowImportance, ActionId::OutlineView, ActionId::Copy,
             ActionId::Relink},
@@ -392,7 +408,7 @@ void MainWindow::updateTitle() {
 }
 
 void MainWindow::startVectorize() {
-    mMessages->hide();
+    mMessages->clear();
     mCanvas->setFocus();
     mWorkspace.vectorize(mPanel->settings(mWorkspace.session()), mPanel->meanError());
 }
@@ -400,7 +416,7 @@ void MainWindow::startVectorize() {
 void MainWindow::showDraft() {
     const auto& draft = mDrafts.mesh();
     mCanvas->setDraft(draft);
-    if (!draft) mMessages->hide();
+    if (!draft) mMessages->clear();
     mPanel->showDraft(draft ? std::optional(draft->patchCount()) : std::nullopt);
 }
 
@@ -520,7 +536,8 @@ void MainWindow::mentionWhenOpen() {
     if (mWorkspace.running(JobKind::Open) || !std::exchange(mMentionRecovery, false)) return;
     mMessages->show({.text = tr("Tessera ended before some changes were saved. They were autosaved."),
                      .actionText = tr("Recover…"),
-                     .action = [this] { askWhatToRecover(); }});
+                     .action = [this] { askWhatToRecover(); },
+                     .keep = true});
 }
 
 void MainWindow::showAbout() {

@@ -125,10 +125,12 @@ class MainWindow : public QMainWindow {
     // A .tessera path; empty where the user chooses none.
     QString askForPath(const DocumentSession& session);
     void chooseAndExport();
-    void exportAgain();
     void chooseAndRelink();
+    // Null is the start page in a tab of its own.
     void closeSession(DocumentSession* session);
-    CloseAnswer askToClose(DocumentSession& session);
+    CloseQuestions closeQuestions();
+    CloseAnswer askAboutChanges(DocumentSession& session);
+    RunningAnswer askAboutWork(const QStringList& titles);
     void fillRecentMenu();
 
     Settings mSettings;
@@ -156,7 +158,6 @@ class MainWindow : public QMainWindow {
     QList<QDockWidget*> mDocks;
     QList<QDockWidget*> mHiddenDocks;  // by Hide Panels, to be shown again
     QMenu* mRecent = nullptr;
-    std::optional<ExportRequest> mLastExport;
     bool mVectorizeWhenOpen = false;
     bool mMentionRecovery = false;
     std::vector<std::shared_ptr<RecoverySlot>> mRecoverable;  // whole documents of a run before this one

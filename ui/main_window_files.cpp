@@ -8,33 +8,18 @@
 #include <QGuiApplication>
 #include <QMenu>
 #include <QMessageBox>
-#include <QMimeData>
+#include <QPushButton>
 
 #include "app/file_service.h"
-#include "app/selection_picture.h"
 #include "ui/canvas_widget.h"
+#include "ui/conversions.h"
 #include "ui/dialogs/export_dialog.h"
+#include "ui/dialogs/save_path.h"
 #include "ui/main_window.h"
 #include "ui/message_bar.h"
 #include "ui/start_page.h"
 
 namespace tessera {
-
-namespace {
-
-// The local files of what is being dragged.
-QStringList droppedFiles(const QMimeData* data) {
-    QStringList files;
-    for (const QUrl& url : data->urls())
-        if (url.isLocalFile()) files.append(url.toLocalFile());
-    return files;
-}
-
-QString withSuffix(const QString& path, const QString& suffix) {
-    return QFileInfo(path).suffix().isEmpty() ? path + '.' + suffix : path;
-}
-
-}  // namespace
 
 void MainWindow::open(const QString& path) {
     mWorkspace.open(path);
@@ -70,9 +55,8 @@ void MainWindow::chooseAndSave() {
 }
 
 QString MainWindow::askForPath(const DocumentSession& session) {
-    const QString path = QFileDialog::getSaveFileName(this, tr("Save As"), session.suggestedPath("tessera"),
-                                                      tr("Tessera documents (*.tessera)"));
-    return path.isEmpty() ? path : withSuffix(path, "tessera");
+    return askForSavePath(this, tr("Save As"), session.suggestedPath("tessera"),
+                          tr("Tessera documents (*.tessera)"));
 }
 
 void MainWindow::chooseAndExport() {
@@ -82,16 +66,9 @@ void MainWindow::chooseAndExport() {
                         mSettings, this);
     if (dialog.exec() != QDialog::Accepted) return;
     ExportRequest request = dialog.request();
-    const QString suggested = session->suggestedPath(dialog.suffix());
-    const QString path = QFileDialog::getSaveFileName(this, tr("Export Picture"), suggested, dialog.filter());
-    if (path.isEmpty()) return;
-    request.path = withSuffix(path, dialog.suffix());
-    mLastExport = request;
-    mWorkspace.exportPicture(request);
-}
-
-void MainWindow::exportAgain() {
-    if (mLastExport) mWorkspace.exportPicture(*mLastExport);
+    request.path =
+        askForSavePath(this, tr("Export Picture"), session->suggestedPath(dialog.suffix()), dialog.filter());
+    if (!request.path.isEmpty()) mWorkspace.exportPicture(request);
 }
 
 void MainWindow::chooseAndRelink() {
@@ -109,16 +86,42 @@ void MainWindow::paste() {
 void MainWindow::copy() {
     const DocumentSession* session = mWorkspace.session();
     if (!session || !session->hasMesh()) return;
-    QGuiApplication::clipboard()->setImage(selectionPicture(*session));
-    say(session->selection().patches().empty() ? tr("The picture is in the clipboard.")
-                                               : tr("The selected patches are in the clipboard."));
+    const QString done = session->selection().patches().empty()
+                             ? tr("The picture is in the clipboard.")
+                             : tr("The selected patches are in the clipboard.");
+    mWorkspace.drawSelection([this, done](const QImage& picture) {
+        QGuiApplication::clipboard()->setImage(picture);
+        say(done);
+    });
 }
 
 void MainWindow::closeSession(DocumentSession* session) {
-    if (session) mWorkspace.close(session, [this](DocumentSession& asked) { return askToClose(asked); });
+    if (session) return mWorkspace.close(session, closeQuestions());
+    // The start page, which is no document.
+    if (!mWorkspace.sessions().isEmpty()) mWorkspace.setCurrent(mWorkspace.sessions().last());
 }
 
-CloseAnswer MainWindow::askToClose(DocumentSession& session) {
+CloseQuestions MainWindow::closeQuestions() {
+    return {.unsaved = [this](DocumentSession& session) { return askAboutChanges(session); },
+            .running = [this](const QStringList& titles) { return askAboutWork(titles); }};
+}
+
+RunningAnswer MainWindow::askAboutWork(const QStringList& titles) {
+    QMessageBox box(QMessageBox::Question, tr("Still Running"),
+                    tr("This is still running: %1.").arg(titles.join(", ")), {}, this);
+    box.setInformativeText(tr("What is stopped is lost."));
+    auto* wait = box.addButton(tr("&Wait, Then Close"), QMessageBox::AcceptRole);
+    wait->setObjectName("wait");
+    auto* stop = box.addButton(tr("&Stop and Close"), QMessageBox::DestructiveRole);
+    stop->setObjectName("stop");
+    box.addButton(QMessageBox::Cancel);
+    box.setDefaultButton(wait);
+    box.exec();
+    if (box.clickedButton() == wait) return RunningAnswer::Wait;
+    return box.clickedButton() == stop ? RunningAnswer::Stop : RunningAnswer::Cancel;
+}
+
+CloseAnswer MainWindow::askAboutChanges(DocumentSession& session) {
     QMessageBox box(QMessageBox::Question, tr("Unsaved Changes"),
                     tr("“%1” has changes that are not saved.").arg(session.displayName()),
                     QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
@@ -143,26 +146,25 @@ CloseAnswer MainWindow::askToClose(DocumentSession& session) {
 void MainWindow::closeEvent(QCloseEvent* event) {
     // What a field or a slider waits with is a change too.
     mCanvas->setFocus();
-    if (mClosing || mWorkspace.sessions().isEmpty()) {
+    if (mClosing || (mWorkspace.sessions().isEmpty() && !mWorkspace.currentJob())) {
         storeWindow();
         return event->accept();
     }
     event->ignore();
-    mWorkspace.closeAll([this](DocumentSession& asked) { return askToClose(asked); },
-                        [this](bool closed) {
-                            if (!closed) return;
-                            mClosing = true;
-                            // Not from here: a window that is being asked to close cannot be closed.
-                            QMetaObject::invokeMethod(this, &QWidget::close, Qt::QueuedConnection);
-                        });
+    mWorkspace.closeAll(closeQuestions(), [this](bool closed) {
+        if (!closed) return;
+        mClosing = true;
+        // Not from here: a window that is being asked to close cannot be closed.
+        QMetaObject::invokeMethod(this, &QWidget::close, Qt::QueuedConnection);
+    });
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-    if (!droppedFiles(event->mimeData()).isEmpty()) event->acceptProposedAction();
+    if (!localFiles(event->mimeData()).isEmpty()) event->acceptProposedAction();
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
-    const QStringList paths = droppedFiles(event->mimeData());
+    const QStringList paths = localFiles(event->mimeData());
     if (paths.isEmpty()) return;
     event->acceptProposedAction();
     for (const QString& path : paths) open(path);

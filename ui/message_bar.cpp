@@ -6,6 +6,7 @@
 #include <QPainter>
 #include <QPushButton>
 #include <QToolButton>
+#include <algorithm>
 
 namespace tessera {
 
@@ -33,26 +34,69 @@ MessageBar::MessageBar(QWidget* parent)
     mClose->setToolTip(tr("Close"));
     layout->addWidget(mClose);
     mLeave.setSingleShot(true);
-    connect(&mLeave, &QTimer::timeout, this, &QWidget::hide);
-    connect(mClose, &QToolButton::clicked, this, &QWidget::hide);
-    connect(mAction, &QPushButton::clicked, this, [this] {
-        hide();
-        if (mMessage.action) mMessage.action();
-    });
+    connect(&mLeave, &QTimer::timeout, this, &MessageBar::clear);
+    connect(mClose, &QToolButton::clicked, this, &MessageBar::take);
+    connect(mAction, &QPushButton::clicked, this, [this] { take().action(); });
     hide();
 }
 
 void MessageBar::show(const Message& message) {
-    mMessage = message;
-    mText->setText(message.text);
-    mAction->setText(message.actionText);
-    mAction->setVisible(bool(message.action));
-    if (message.kind == Message::Kind::Info && !message.action)
-        mLeave.start(kShownMs);
+    if (message.keep)
+        mKept.push_back(message);
     else
-        mLeave.stop();
-    QFrame::show();
+        mPassing = message;
+    showFront();
+}
+
+void MessageBar::clear() {
+    mPassing.reset();
+    showFront();
+}
+
+void MessageBar::setDocument(const DocumentSession* document) {
+    mDocument = document;
+    clear();
+}
+
+void MessageBar::forget(const DocumentSession* document) {
+    std::erase_if(mKept, [&](const Message& message) { return message.about == document; });
+    showFront();
+}
+
+const Message* MessageBar::front() const {
+    if (mPassing) return &*mPassing;
+    const auto kept = std::find_if(mKept.begin(), mKept.end(), [&](const Message& message) {
+        return !message.about || message.about == mDocument;
+    });
+    return kept == mKept.end() ? nullptr : &*kept;
+}
+
+Message MessageBar::take() {
+    const Message* const seen = front();
+    if (!seen) return {};
+    const Message taken = *seen;
+    if (mPassing)
+        mPassing.reset();
+    else
+        mKept.erase(std::find_if(mKept.begin(), mKept.end(), [&](const Message& m) { return &m == seen; }));
+    showFront();
+    return taken;
+}
+
+void MessageBar::showFront() {
+    mLeave.stop();
+    const Message* const message = front();
+    setVisible(message);
+    if (!message) return;
+    mText->setText(message->text);
+    mAction->setText(message->actionText);
+    mAction->setVisible(bool(message->action));
+    if (message->kind == Message::Kind::Info && !message->action) mLeave.start(kShownMs);
     update();
+}
+
+bool MessageBar::showsError() const {
+    return front() && front()->kind == Message::Kind::Error;
 }
 
 QString MessageBar::text() const {

@@ -18,6 +18,7 @@
 #include <QtConcurrent>
 #include <algorithm>
 
+#include "ui/conversions.h"
 #include "ui/icons.h"
 #include "ui/thumbnail.h"
 #include "ui/widget_parts.h"
@@ -34,13 +35,6 @@ constexpr int kMaxColumns = 5;
 constexpr int kMarginPx = 32;
 constexpr double kRoundingPx = 10;
 const QString kSample = ":/sample/still_life.png";
-
-QStringList localFiles(const QMimeData* data) {
-    QStringList files;
-    for (const QUrl& url : data->urls())
-        if (url.isLocalFile()) files << url.toLocalFile();
-    return files;
-}
 
 QString thumbnailKey(const QString& path) {
     return path + '\n' + QFileInfo(path).lastModified().toString(Qt::ISODateWithMs);

@@ -31,21 +31,27 @@ size_t bytesBeyond(const Document& document, const Document& other) {
 
 }  // namespace
 
-EditCommand::EditCommand(DocumentSession& session, QString text, Document after, Change change)
+EditCommand::EditCommand(DocumentSession& session, QString text, Document after, Change change,
+                         std::optional<Photo> photo)
     : mSession(session),
       mText(std::move(text)),
       mOther(std::move(after)),
       mOtherRevision(session.newRevision()),
+      mOtherPhoto(std::move(photo)),
       mChange(std::move(change)),
       mBytesBefore(bytesBeyond(session.document(), mOther)),
       mBytesAfter(bytesBeyond(mOther, session.document())) {
+    if (mOtherPhoto) {
+        mBytesBefore += session.photo().imageBytes();
+        mBytesAfter += mOtherPhoto->imageBytes();
+    }
     mChange.preview = false;
     mChange.saved = true;
 }
 
 void EditCommand::swap() {
     mDone = !mDone;
-    mSession.swapState(mOther, mOtherRevision, mChange);
+    mSession.swapState(mOther, mOtherRevision, mOtherPhoto, mChange);
 }
 
 }  // namespace tessera

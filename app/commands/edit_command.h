@@ -4,8 +4,10 @@
 #include <QString>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "app/change.h"
+#include "app/photo.h"
 #include "core/document/document.h"
 
 namespace tessera {
@@ -19,7 +21,9 @@ class EditCommand {
   public:
     // `after` takes the place of the session's document at the first swap(), which announces `change`, and so
     // does each later one. The session outlives its commands.
-    EditCommand(DocumentSession& session, QString text, Document after, Change change);
+    // A photo takes the place of the session's too.
+    EditCommand(DocumentSession& session, QString text, Document after, Change change,
+                std::optional<Photo> photo = {});
 
     const QString& text() const { return mText; }
     // The revision of the state that is held.
@@ -33,6 +37,7 @@ class EditCommand {
     QString mText;
     Document mOther;
     uint64_t mOtherRevision;
+    std::optional<Photo> mOtherPhoto;  // where the step is about it
     Change mChange;
     size_t mBytesBefore;  // of the state before that the state after does not share
     size_t mBytesAfter;   // and the other way round

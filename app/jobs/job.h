@@ -15,7 +15,7 @@
 
 namespace tessera {
 
-enum class JobKind { Open, Relink, Drafts, Vectorize, Save, Autosave, Export, Edit, Render, Palette };
+enum class JobKind { Open, Relink, Drafts, Vectorize, Save, Autosave, Export, Copy, Edit, Render, Palette };
 
 // One piece of work on the global thread pool. Lives on the thread that made it, and calls back only there.
 // Destroying it asks the work to stop and drops its result, so that a job whose owner is gone changes

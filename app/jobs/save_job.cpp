@@ -1,6 +1,7 @@
 // See save_job.h.
 #include "app/jobs/save_job.h"
 
+#include <QFile>
 #include <QFileInfo>
 #include <algorithm>
 
@@ -24,7 +25,17 @@ void addPreview(Document& document) {
         document.previewPng = std::make_shared<const std::vector<uint8_t>>(std::move(*png));
 }
 
-Result<Saved> run(Document document, const QString& path, Progress& progress) {
+bool holds(const QString& path, const std::vector<uint8_t>& bytes) {
+    QFile file(path);
+    if (!file.open(QIODevice::ReadOnly) || file.size() != qint64(bytes.size())) return false;
+    const QByteArray held = file.readAll();
+    return std::equal(bytes.begin(), bytes.end(), held.begin(), held.end(),
+                      [](uint8_t a, char b) { return a == uint8_t(b); });
+}
+
+Result<Saved> run(Document document, const QString& path, const QString& photoFile, Progress& progress) {
+    if (!photoFile.isEmpty() && document.embeddedSource && holds(photoFile, *document.embeddedSource))
+        document.embeddedSource.reset();
     progress.beginStage("drawing the preview", .5);
     if (!document.previewPng && document.mesh.patchCount() > 0) addPreview(document);
     progress.beginStage("writing", .5);
@@ -36,12 +47,12 @@ Result<Saved> run(Document document, const QString& path, Progress& progress) {
 
 }  // namespace
 
-Job* startSaveJob(QObject* owner, Document document, const QString& path,
+Job* startSaveJob(QObject* owner, Document document, const QString& path, const QString& photoFile,
                   std::function<void(Result<Saved>)> deliver) {
     auto* job = new Job(JobKind::Save, QObject::tr("Saving %1").arg(QFileInfo(path).fileName()), owner);
-    job->start<Saved>(
-        [document = std::move(document), path](Progress& progress) { return run(document, path, progress); },
-        std::move(deliver));
+    job->start<Saved>([document = std::move(document), path,
+                       photoFile](Progress& progress) { return run(document, path, photoFile, progress); },
+                      std::move(deliver));
     return job;
 }
 

@@ -115,7 +115,7 @@ void GradientTool::clicked(const ToolEvent&) {
 
 void GradientTool::dragStarted(const ToolEvent& event) {
     clicked(event);
-    if (session().selection().patches().empty() || session().editing()) return;
+    if (session().selection().patches().empty() || !mayBegin()) return;
     mGesture.emplace(session(), QObject::tr("Gradient"), RecolourOptions{.featherPx = options().featherPx});
 }
 
@@ -129,7 +129,7 @@ void GradientTool::dragged(const ToolEvent& event) {
 }
 
 void GradientTool::dropped(const ToolEvent&) {
-    if (mGesture) mGesture->commit();
+    if (mGesture) mGesture->commit(host().finish());
     mGesture.reset();
 }
 

@@ -18,9 +18,15 @@ SelectMode selectModeOf(const ToolModifiers& modifiers) {
     return modifiers.alt ? SelectMode::Subtract : SelectMode::Replace;
 }
 
+bool Tool::mayBegin() const {
+    if (!session().editing()) return true;
+    report(refusedMeanwhile());
+    return false;
+}
+
 bool Tool::begin(std::optional<EditSession>& edit, const QString& text) const {
     edit.reset();
-    if (session().editing()) return false;
+    if (!mayBegin()) return false;
     edit.emplace(session(), text);
     return true;
 }

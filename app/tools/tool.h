@@ -6,7 +6,7 @@
 #include <optional>
 #include <variant>
 
-#include "app/edit_session.h"
+#include "app/element_edits.h"
 #include "app/tools/tool_event.h"
 #include "app/tools/tool_options.h"
 #include "app/tools/tool_overlay.h"
@@ -53,6 +53,8 @@ class ToolHost {
     virtual void changeView(const ViewRequest& request) = 0;
     // One sentence for the person.
     virtual void say(const QString& text) = 0;
+    // Ends gestures whose last edit may take longer than a frame.
+    virtual const FinishGesture& finish() const = 0;
 };
 
 class Tool {
@@ -86,7 +88,10 @@ class Tool {
     const PatchMesh& mesh() const { return session().document().mesh; }
     const ToolOptions& options() const { return mHost.options(); }
     ToolHost& host() const { return mHost; }
-    // Opens a gesture; false, and none is open, while another one is (of a panel, say).
+    // Whether a gesture can be opened; says that another one (of a panel, say) or an edit under way is in its
+    // way.
+    bool mayBegin() const;
+    // Opens a gesture; false, and none is open, where mayBegin() is false.
     bool begin(std::optional<EditSession>& edit, const QString& text) const;
     // Says what failed, if anything did.
     void report(const Result<void>& result) const;

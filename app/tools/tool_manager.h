@@ -26,6 +26,9 @@ class ToolManager : public QObject, private ToolHost {
     void setTool(ToolId id);
     const ToolOptions& options() const override { return mOptions; }
     void setOptions(const ToolOptions& options) override;
+    // finishNow where nothing else is said.
+    void setFinish(FinishGesture finish) { mFinish = std::move(finish); }
+    const FinishGesture& finish() const override { return mFinish; }
 
     void press(const ToolEvent& event);
     void move(const ToolEvent& event);
@@ -63,6 +66,7 @@ class ToolManager : public QObject, private ToolHost {
 
     QPointer<DocumentSession> mSession;
     ToolOptions mOptions;
+    FinishGesture mFinish = finishNow;
     ToolId mCurrent = ToolId::Select;
     std::array<std::unique_ptr<Tool>, size_t(ToolId::Count)> mTools;
 };

@@ -213,6 +213,14 @@ Result<void> saveDocument(Document& document, const std::string& path) {
     return writeFileAtomically(path, *bytes);
 }
 
+Result<Document> decodeFile(std::span<const uint8_t> bytes, const std::string& path) {
+    auto document = decodeDocument(bytes);
+    if (!document)
+        return failure(document.error().code,
+                       quoted(path) + " is no sound document: " + document.error().message);
+    return document;
+}
+
 Result<Document> loadDocument(const std::string& path) {
     std::error_code error;
     const bool plain = std::filesystem::is_regular_file(path, error);
@@ -225,11 +233,7 @@ Result<Document> loadDocument(const std::string& path) {
     std::vector<uint8_t> bytes(size);
     if (!file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)))
         return failure(ErrorCode::CannotRead, quoted(path) + " cannot be read to its end");
-    auto document = decodeDocument(bytes);
-    if (!document)
-        return failure(document.error().code,
-                       quoted(path) + " is no sound document: " + document.error().message);
-    return document;
+    return decodeFile(bytes, path);
 }
 
 }  // namespace tessera

@@ -38,6 +38,8 @@ bool looksLikeDocument(std::span<const uint8_t> bytes);
 // encodeDocument to a temporary file beside `path`, synced and renamed: the file is the old one or the new
 // one.
 Result<void> saveDocument(Document& document, const std::string& path);
+// decodeDocument of a file's bytes; messages name the file.
+Result<Document> decodeFile(std::span<const uint8_t> bytes, const std::string& path);
 // CannotRead where the file cannot be read, DamagedDocument where it is no sound document; messages name the
 // file.
 Result<Document> loadDocument(const std::string& path);

@@ -35,7 +35,7 @@ struct DocumentSessionTest : ::testing::Test {
         session.history().push(EditCommand(session, "Vectorize", std::move(document), {.replaced = true}));
     }
 
-    DocumentSession session{documentWith(4, 1), {}, "/folder/old.tessera", {}};
+    DocumentSession session{documentWith(4, 1), {}, "/folder/old.tessera"};
 };
 
 TEST_F(DocumentSessionTest, UndoAndRedoGiveTheSameStates) {
@@ -104,7 +104,7 @@ TEST_F(DocumentSessionTest, OneSignalForOneStep) {
 
 TEST_F(DocumentSessionTest, SuggestsNamesBesideTheFile) {
     EXPECT_EQ(session.suggestedPath("png"), "/folder/old.png");
-    const DocumentSession photo({}, {}, {}, "/photos/cat.small.jpg");
+    const DocumentSession photo({}, {.path = "/photos/cat.small.jpg"}, {});
     EXPECT_EQ(photo.suggestedPath("tessera"), "/photos/cat.small.tessera");
     EXPECT_EQ(photo.displayName(), "cat.small.jpg");
 }

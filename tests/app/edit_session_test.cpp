@@ -28,7 +28,7 @@ struct EditSessionTest : ::testing::Test {
         return [=](PatchMesh& mesh) { return testing::paint(mesh, PatchId(patch), value); };
     }
 
-    DocumentSession session{smallDocument(), {}, {}, {}};
+    DocumentSession session{smallDocument(), {}, {}};
     std::vector<Change> changes;
 };
 
@@ -138,7 +138,7 @@ TEST_F(EditSessionTest, OthersWaitInOrder) {
 }
 
 TEST_F(EditSessionTest, ADocumentMayGoFirst) {
-    auto closing = std::make_unique<DocumentSession>(smallDocument(), Photo{}, QString(), QString());
+    auto closing = std::make_unique<DocumentSession>(smallDocument(), Photo{}, QString());
     EditSession edit(*closing, "Paint");
     ASSERT_TRUE(edit.preview(painting(3, 1)));
     closing.reset();

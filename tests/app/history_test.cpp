@@ -25,7 +25,7 @@ struct HistoryTest : ::testing::Test {
     }
     std::vector<uint8_t> bytes() const { return testing::bytesOf(session.document()); }
 
-    DocumentSession session{largeDocument(), {}, {}, {}};
+    DocumentSession session{largeDocument(), {}, {}};
     History& history = session.history();
 };
 

@@ -29,7 +29,7 @@ TEST(PatchMarks, FollowEditsPreviewsUndoAndSplits) {
     Document document;
     document.mesh = testing::gridMesh(64, 48, 4, 3);
     document.mesh.setAttributes(PatchId(5), {.hidden = true});
-    DocumentSession session(std::move(document), {}, {}, {});
+    DocumentSession session(std::move(document), {}, {});
     EXPECT_EQ(session.marks().hidden(), PatchSet{PatchId(5)}) << "of a document that is opened";
     std::mt19937 random(3);
     for (int i = 0; i < 120; ++i) {

@@ -65,7 +65,7 @@ TEST_F(SettingsTest, KeysAreRemapped) {
     EXPECT_EQ(Settings().key("undo"), QKeySequence()) << "no key at all";
     Settings().setKey("save", {});
     EXPECT_FALSE(Settings().key("save").has_value());
-    Settings().clearKeys();
+    Settings().setKey("undo", {});
     EXPECT_FALSE(Settings().key("undo").has_value());
 }
 
@@ -74,6 +74,8 @@ TEST_F(SettingsTest, ToolOptionsComeBackExactly) {
     options.colour = {.1, 1. / 3, 1};
     options.secondColour = {0, .25, .7};
     options.wand = {.tolerance = .123, .contiguous = false, .stopAtFeatures = true};
+    options.gapPx = 12.5;
+    options.allHandles = true;
     options.eyedropper = ColourSource::Original;
     options.brushRadiusPx = 7.5;
     options.brushHardness = .9;
@@ -90,6 +92,8 @@ TEST_F(SettingsTest, ToolOptionsComeBackExactly) {
     EXPECT_EQ(read.wand.tolerance, options.wand.tolerance);
     EXPECT_EQ(read.wand.contiguous, options.wand.contiguous);
     EXPECT_EQ(read.wand.stopAtFeatures, options.wand.stopAtFeatures);
+    EXPECT_EQ(read.gapPx, options.gapPx);
+    EXPECT_EQ(read.allHandles, options.allHandles);
     EXPECT_EQ(read.eyedropper, options.eyedropper);
     EXPECT_EQ(read.brushRadiusPx, options.brushRadiusPx);
     EXPECT_EQ(read.brushHardness, options.brushHardness);

@@ -10,6 +10,7 @@
 #include "app/element_edits.h"
 #include "app/selection_actions.h"
 #include "app/tools/tool_manager.h"
+#include "core/edit/edge_edits.h"
 #include "core/mesh/mesh_validate.h"
 #include "tests/support/edits.h"
 #include "tests/support/test_meshes.h"
@@ -47,8 +48,7 @@ class RandomSession {
     explicit RandomSession(unsigned seed) : mRandom(seed) {
         Document document;
         document.mesh = startMesh(seed);
-        mSession = std::make_unique<DocumentSession>(document, Photo{photo(), nullptr, nullptr}, QString(),
-                                                     QString());
+        mSession = std::make_unique<DocumentSession>(document, Photo{photo(), nullptr, nullptr}, QString());
         mTools.setSession(mSession.get());
     }
     ~RandomSession() { mTools.setSession(nullptr); }
@@ -138,11 +138,11 @@ class RandomSession {
             case 3:
                 return shrinkSelection(s);
             case 4:
-                return storeSelection(s, QString::number(below(3)));
+                return void(storeSelection(s, QString::number(below(3))));
             case 5:
                 return recallSelection(s, QString::number(below(3)), SelectMode(below(4)));
             case 6:
-                return removeStoredSelection(s, QString::number(below(3)));
+                return void(removeStoredSelection(s, QString::number(below(3))));
             case 7:
                 return s.history().undo();
             case 8:
@@ -160,7 +160,9 @@ class RandomSession {
             case 13:
                 return void(makeNow(s, setFeature(s, below(2) == 0)));
             case 14:
-                return void(setBlur(s, 3 * unit(), 3 * unit()));
+                return void(applyEdit(s, "Blur", [&](PatchMesh& mesh) {
+                    return setBlur(mesh, s.selection().curves(), 3 * unit(), 3 * unit());
+                }));
             case 15:
                 // Few, so that the mesh does not grow without end.
                 if (s.selection().patches().size() < 3) (void)makeNow(s, splitPatches(s));

@@ -6,6 +6,8 @@
 #include <QDir>
 #include <QSignalSpy>
 #include <QTest>
+#include <atomic>
+#include <thread>
 
 #include "app/autosave.h"
 #include "app/edit_session.h"
@@ -69,6 +71,32 @@ TEST_F(RecoveryStoreTest, WhatIsForgottenIsGone) {
         EXPECT_FALSE(slot->info().has_value());
     }
     EXPECT_EQ(folders(), 0);
+}
+
+// The window forgets; it must not wait for a disk.
+TEST_F(RecoveryStoreTest, ForgettingDoesNotWaitForAWriteUnderWay) {
+    RecoveryStore store(root());
+    Document large = painted(.1f);
+    large.embeddedSource = std::make_shared<const std::vector<uint8_t>>(size_t{100} << 20, uint8_t{7});
+    const QString folder = QDir(root()).entryInfoList(QDir::Dirs | QDir::NoDotAndDotDot).at(0).filePath();
+    const auto files = [&] { return QDir(folder).entryList(QDir::Files | QDir::Hidden).size(); };
+    bool early = false;
+    // The writer may be faster than we once, and not always.
+    for (int attempt = 0; attempt < 5 && !early; ++attempt) {
+        const auto slot = store.newSlot();
+        std::atomic<bool> done = false;
+        std::thread writer([&] {
+            EXPECT_TRUE(slot->write(large, info));
+            done = true;
+        });
+        while (files() < 2 && !done) std::this_thread::yield();
+        slot->forget();
+        early = !done;
+        writer.join();
+        EXPECT_FALSE(slot->info().has_value());
+        EXPECT_EQ(files(), 1) << "the lock alone";
+    }
+    EXPECT_TRUE(early);
 }
 
 TEST_F(RecoveryStoreTest, RubbishIsClearedAway) {
@@ -136,6 +164,10 @@ class AutosaveTest : public RecoveryStoreTest {
         const auto edit = [value](PatchMesh& mesh) { return testing::paint(mesh, PatchId(3), value); };
         ASSERT_TRUE(applyEdit(*workspace->session(), "Paint", edit));
     }
+    static CloseQuestions discarding() {
+        return {[](auto&) { return CloseAnswer{CloseAnswer::Kind::Discard}; },
+                [](auto&) { return RunningAnswer::Stop; }};
+    }
     // Ends this instance as a crash would, as far as the folder is concerned, and begins another.
     std::vector<std::shared_ptr<RecoverySlot>> crash() {
         autosave.reset();
@@ -181,7 +213,7 @@ TEST_F(AutosaveTest, SavedAndClosedDocumentsAreForgotten) {
     openAndPaint(.7f);
     autosave->saveNow();
     ASSERT_TRUE(idle());
-    workspace->close(workspace->session(), [](auto&) { return CloseAnswer{CloseAnswer::Kind::Discard}; });
+    workspace->close(workspace->session(), discarding());
     EXPECT_TRUE(crash().empty());
     openAndPaint(.8f);
     autosave->saveNow();
@@ -212,6 +244,20 @@ TEST_F(AutosaveTest, WaitsForTheEndOfAGestureAndWritesOnlyChanges) {
     const auto left = crash();
     ASSERT_EQ(left.size(), 1u);
     EXPECT_EQ(bytesIn(*left[0]), bytes);
+}
+
+// The autosave waits behind the closing for the end of the same gesture.
+TEST_F(AutosaveTest, ADocumentThatIsClosedBeforeItsTurnIsNotWritten) {
+    openAndPaint(.5f);
+    QPointer<DocumentSession> session = workspace->session();
+    {
+        EditSession gesture(*session, "Paint");
+        workspace->close(session, discarding());
+        autosave->saveNow();
+    }
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !session; }, kWaitMs));
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(crash().empty());
 }
 
 TEST_F(AutosaveTest, TheTimerDoesIt) {

@@ -30,7 +30,7 @@ struct SelectionTest : ::testing::Test {
     }
     const PatchMesh& mesh() const { return session.document().mesh; }
 
-    DocumentSession session{smallDocument(), {}, {}, {}};
+    DocumentSession session{smallDocument(), {}, {}};
     Selection& selection = session.selection();
 };
 
@@ -151,6 +151,20 @@ TEST_F(SelectionTest, StoredSelectionsArePartsOfTheDocument) {
     EXPECT_EQ(session.document().selections[0].name, "lake");
     session.history().goTo(0);
     EXPECT_TRUE(session.document().selections.empty());
+}
+
+TEST_F(SelectionTest, StoredSelectionsDoNotChangeDuringAnotherChange) {
+    selection.setPatches(ids({1, 6}));
+    ASSERT_TRUE(storeSelection(session, "sky"));
+    const EditSession other(session, "Other");
+    const auto expectRefused = [](const Result<void>& result) {
+        ASSERT_FALSE(result);
+        EXPECT_NE(result.error().message.find("under way"), std::string::npos) << result.error().message;
+    };
+    expectRefused(storeSelection(session, "sea"));
+    expectRefused(renameStoredSelection(session, "sky", "lake"));
+    expectRefused(removeStoredSelection(session, "sky"));
+    EXPECT_EQ(session.document().selections.size(), 1u);
 }
 
 TEST_F(SelectionTest, BothHalvesOfACurveThatIsSplitAreSelected) {

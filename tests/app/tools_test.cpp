@@ -44,7 +44,7 @@ struct ToolsTest : ::testing::Test {
     ToolsTest() {
         Document document;
         document.mesh = twoHalves();
-        session = std::make_unique<DocumentSession>(document, Photo{}, QString(), QString());
+        session = std::make_unique<DocumentSession>(document, Photo{}, QString());
         tools.setSession(session.get());
     }
     ~ToolsTest() override { tools.setSession(nullptr); }
@@ -82,6 +82,22 @@ TEST_F(ToolsTest, ClicksSelectPatches) {
     pointer.modifiers = {};
     pointer.click({-5, 10});
     EXPECT_TRUE(selected().empty()) << "a click beside the picture";
+}
+
+// As while a job edits many elements.
+TEST_F(ToolsTest, SayThatAnotherChangeIsUnderWay) {
+    QString said;
+    QObject::connect(&tools, &ToolManager::said, [&](const QString& text) { said = text; });
+    session->selection().setPatches({patchAt({25, 25})});
+    EditSession other(*session, "Other");
+    for (const ToolId tool :
+         {ToolId::Brush, ToolId::DragColour, ToolId::Gradient, ToolId::Blur, ToolId::Direct}) {
+        said.clear();
+        tools.setTool(tool);
+        pointer.drag(place(vertex(3, 2)), {70, 70});
+        EXPECT_TRUE(said.contains("under way")) << "tool " << int(tool);
+        EXPECT_EQ(history().count(), 0);
+    }
 }
 
 TEST_F(ToolsTest, AMarqueeSelectsAsItGrows) {
@@ -302,7 +318,7 @@ TEST_F(ToolsTest, TheEyedropperPicks) {
 TEST_F(ToolsTest, TheEyedropperPicksFromTheOriginalToo) {
     auto image = std::make_shared<const Image>(
         testing::paint(kWidth, kHeight, 3, [](double, double, int c) { return c == 0 ? .5 : .25; }));
-    session->setPhoto({image, nullptr, nullptr}, "photo.png");
+    session->relinkPhoto({image, nullptr, nullptr}, {});
     tools.setTool(ToolId::Eyedropper);
     pointer.modifiers.alt = true;
     pointer.click({25, 25});

@@ -7,9 +7,10 @@
 #include <QTest>
 #include <cmath>
 
+#include "app/colour_adjustment.h"
 #include "app/edit_session.h"
 #include "app/element_edits.h"
-#include "app/selection_picture.h"
+#include "app/recolour_gesture.h"
 #include "core/document/codec.h"
 #include "core/image/image_io.h"
 #include "tests/support/edits.h"
@@ -53,16 +54,23 @@ class WorkspaceTest : public testing::TemporaryFolderTest {
         const auto edit = [](PatchMesh& mesh) { return testing::paint(mesh, PatchId(3), .5f); };
         ASSERT_TRUE(applyEdit(*workspace.session(), "Paint", edit));
     }
-    AskToClose answering(CloseAnswer answer) {
-        return [this, answer](DocumentSession&) {
-            ++asked;
-            return answer;
-        };
+    CloseQuestions answering(CloseAnswer answer, RunningAnswer aboutWork = RunningAnswer::Stop) {
+        return {.unsaved =
+                    [this, answer](DocumentSession&) {
+                        ++asked;
+                        return answer;
+                    },
+                .running =
+                    [this, aboutWork](const QStringList& titles) {
+                        askedAbout.append(titles);
+                        return aboutWork;
+                    }};
     }
 
     Workspace workspace;
     Message said;
-    int asked = 0;
+    int asked = 0;           // about unsaved changes
+    QStringList askedAbout;  // the work that would have been lost
 };
 
 TEST_F(WorkspaceTest, DocumentsAreOpenSideBySide) {
@@ -144,6 +152,98 @@ TEST_F(WorkspaceTest, ClosingAllEndsWithASaveThatFails) {
     EXPECT_EQ(asked, 1);
 }
 
+TEST_F(WorkspaceTest, ClosingTwiceDuringASaveClosesOnce) {
+    open(documentFile("a.tessera"));
+    open(documentFile("b.tessera"));
+    open(documentFile("c.tessera"));
+    workspace.setCurrent(workspace.sessions()[1]);
+    const QPointer<DocumentSession> b = workspace.session();
+    change();
+    workspace.save(path("b.tessera"), true);
+    std::vector<int> heard;
+    workspace.close(b, answering({}), [&](bool closed) { heard.push_back(closed ? 1 : -1); });
+    EXPECT_EQ(heard, std::vector<int>());
+    workspace.close(b, answering({}), [&](bool closed) { heard.push_back(closed ? 2 : -2); });
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !b; }, kWaitMs));
+    EXPECT_EQ(heard, (std::vector{-1, 2}));
+    EXPECT_EQ(asked, 0) << "it was saved";
+    ASSERT_EQ(workspace.sessions().size(), 2);
+    EXPECT_EQ(workspace.sessions()[0]->displayName(), "a.tessera");
+    EXPECT_EQ(workspace.sessions()[1]->displayName(), "c.tessera");
+}
+
+TEST_F(WorkspaceTest, ClosingTwiceDuringASaveThatFailsAsksOnce) {
+    open(documentFile("a.tessera"));
+    change();
+    workspace.save(path("no/such/folder/a.tessera"), true);
+    std::vector<bool> heard;
+    for (int i = 0; i < 2; ++i)
+        workspace.closeAll(answering({CloseAnswer::Kind::Cancel}), [&](bool all) { heard.push_back(all); });
+    ASSERT_TRUE(QTest::qWaitFor([&] { return heard.size() == 2; }, kWaitMs));
+    EXPECT_EQ(asked, 1);
+    EXPECT_EQ(heard, (std::vector{false, false}));
+    EXPECT_EQ(workspace.sessions().size(), 1);
+}
+
+TEST_F(WorkspaceTest, EndingAsksAboutExportsThatRun) {
+    open(documentFile("a.tessera"));
+    const auto startExport = [&] {
+        workspace.exportPicture({.path = path("a.png"), .scale = 60, .options = {}});
+        ASSERT_TRUE(workspace.running(JobKind::Export));
+    };
+    startExport();
+    std::optional<bool> closed;
+    const auto hear = [&](bool all) { closed = all; };
+    workspace.closeAll(answering({}, RunningAnswer::Cancel), hear);
+    EXPECT_EQ(askedAbout, QStringList("Exporting a.png"));
+    EXPECT_EQ(closed, false);
+    EXPECT_EQ(workspace.sessions().size(), 1);
+    ASSERT_TRUE(workspace.running(JobKind::Export));
+    workspace.closeAll(answering({}, RunningAnswer::Stop), hear);
+    EXPECT_EQ(closed, true);
+    EXPECT_TRUE(workspace.sessions().isEmpty());
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(QFile::exists(path("a.png")));
+    open(path("a.tessera"));
+    startExport();
+    closed.reset();
+    workspace.closeAll(answering({}, RunningAnswer::Wait), hear);
+    EXPECT_EQ(closed, std::nullopt);
+    ASSERT_TRUE(QTest::qWaitFor([&] { return closed.has_value(); }, kWaitMs));
+    EXPECT_TRUE(*closed);
+    EXPECT_TRUE(QFile::exists(path("a.png"))) << said.text.toStdString();
+    EXPECT_EQ(askedAbout.size(), 3);
+}
+
+TEST_F(WorkspaceTest, ClosingATabLeavesItsExportAlone) {
+    open(documentFile("a.tessera"));
+    workspace.exportPicture({.path = path("a.png"), .scale = 30, .options = {}});
+    workspace.close(workspace.session(), answering({}));
+    EXPECT_TRUE(workspace.sessions().isEmpty());
+    EXPECT_EQ(askedAbout, QStringList());
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(QFile::exists(path("a.png")));
+}
+
+TEST_F(WorkspaceTest, ClosingAsksAboutAVectorizationThatRuns) {
+    ASSERT_TRUE(stripes(160, 120).save(path("a.png")));
+    open(path("a.png"));
+    VectorizeSettings settings;
+    settings.patches = 40;
+    workspace.vectorize(settings);
+    DocumentSession* const session = workspace.session();
+    workspace.close(session, answering({}, RunningAnswer::Cancel));
+    EXPECT_EQ(askedAbout, QStringList("Vectorizing a.png"));
+    EXPECT_TRUE(workspace.running(JobKind::Vectorize));
+    std::optional<bool> closed;
+    workspace.close(session, answering({CloseAnswer::Kind::Cancel}, RunningAnswer::Wait),
+                    [&](bool done) { closed = done; });
+    ASSERT_TRUE(QTest::qWaitFor([&] { return closed.has_value(); }, kWaitMs));
+    EXPECT_FALSE(*closed);
+    EXPECT_TRUE(session->hasMesh());
+    EXPECT_EQ(asked, 1) << "what was waited for is not saved";
+}
+
 TEST_F(WorkspaceTest, ASaveWaitsForTheEndOfAGesture) {
     open(documentFile("a.tessera"));
     const auto edit = [](PatchMesh& mesh) { return testing::paint(mesh, PatchId(3), .5f); };
@@ -158,6 +258,38 @@ TEST_F(WorkspaceTest, ASaveWaitsForTheEndOfAGesture) {
     ASSERT_TRUE(QTest::qWaitFor([&] { return !workspace.session()->modified(); }, kWaitMs));
     EXPECT_EQ(workspace.session()->displayName(), "other.tessera");
     ASSERT_TRUE(idle());
+}
+
+TEST_F(WorkspaceTest, AFileHoldsOneOfTheOpenDocuments) {
+    const QString a = documentFile("a.tessera", 40);
+    open(a);
+    open(documentFile("b.tessera", 50));
+    std::optional<bool> written;
+    const auto hear = [&](bool done) { written = done; };
+    ASSERT_TRUE(QFile::link(a, path("link.tessera")));
+    for (const QString& file : {a, path("link.tessera"), path("./a.tessera")}) {
+        written.reset();
+        workspace.save(file, true, hear);
+        EXPECT_EQ(written, false) << file.toStdString();
+        EXPECT_TRUE(said.text.contains("another tab")) << said.text.toStdString();
+    }
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(loadDocument(at("a.tessera"))->mesh.width(), 40);
+    // A file is taken from the moment when a save to it begins.
+    workspace.save(path("c.tessera"), true);
+    workspace.setCurrent(workspace.sessions()[0]);
+    workspace.save(path("c.tessera"), true, hear);
+    EXPECT_EQ(written, false);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(loadDocument(at("c.tessera"))->mesh.width(), 50);
+}
+
+TEST_F(WorkspaceTest, AnExportWithoutAFormatDoesNotBegin) {
+    open(documentFile("a.tessera"));
+    workspace.exportPicture({.path = path("photo.v2"), .options = {}});
+    EXPECT_EQ(workspace.currentJob(), nullptr);
+    EXPECT_EQ(said.kind, Message::Kind::Error);
+    EXPECT_FALSE(workspace.canExportAgain());
 }
 
 TEST_F(WorkspaceTest, JobsBelongToTheirDocument) {
@@ -226,22 +358,95 @@ TEST_F(WorkspaceTest, AMissingPhotoIsRelinked) {
     EXPECT_TRUE(workspace.canVectorize());
     workspace.relinkPhoto(path("photo.png"));
     ASSERT_TRUE(idle());
+    said.action();  // it is not the other one
     EXPECT_EQ(toQImage(*workspace.session()->photo().image), stripes(64, 48));
-    EXPECT_FALSE(workspace.session()->modified());
+    DocumentSession& session = *workspace.session();
+    EXPECT_TRUE(session.modified()) << "closed without a question, the document would not find it again";
+    EXPECT_EQ(session.document().source.fileName, "photo.png");
+    session.history().undo();
+    EXPECT_EQ(session.document().source.fileName, "other.png");
+    EXPECT_NE(toQImage(*session.photo().image), stripes(64, 48));
+    session.history().undo();
+    EXPECT_FALSE(workspace.canVectorize()) << "the photo was missing";
+    EXPECT_FALSE(session.modified());
+    session.history().redo();
+    session.history().redo();
+    EXPECT_EQ(toQImage(*session.photo().image), stripes(64, 48));
     workspace.save(path("a.tessera"), true);
     ASSERT_TRUE(idle());
+    EXPECT_FALSE(session.modified());
     ASSERT_TRUE(loadDocument(at("a.tessera"))->embeddedSource) << "from now on it cannot get lost";
+}
+
+// Another picture than the one that was vectorized is the document's from then on.
+TEST_F(WorkspaceTest, ARelinkedPhotoIsThereAfterTheNextOpening) {
+    Document document;
+    document.mesh = testing::gridMesh(64, 48, 4, 3);
+    document.source.fileName = "gone.png";
+    document.source.sha256 = std::string(64, '0');
+    ASSERT_TRUE(saveDocument(document, at("a.tessera")).has_value());
+    ASSERT_TRUE(stripes(64, 48).save(path("photo.png")));
+    open(path("a.tessera"));
+    workspace.relinkPhoto(path("photo.png"));
+    ASSERT_TRUE(idle());
+    ASSERT_TRUE(said.action);
+    said.action();
+    workspace.save(path("a.tessera"), false);
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(loadDocument(at("a.tessera"))->embeddedSource);
+    workspace.close(workspace.session(), answering({}));
+    EXPECT_EQ(asked, 0);
+    open(path("a.tessera"));
+    EXPECT_TRUE(workspace.canVectorize());
+}
+
+TEST_F(WorkspaceTest, APhotoThatIsNowhereElseStaysInTheDocument) {
+    const QString file = path("a.tessera");
+    const auto embeds = [&] { return loadDocument(at("a.tessera"))->embeddedSource != nullptr; };
+    ASSERT_TRUE(stripes(64, 48).save(path("photo.png")));
+    Document document;
+    document.mesh = testing::gridMesh(64, 48, 4, 3);
+    document.source = readImage(at("photo.png")).value().source;
+    QFile photo(path("photo.png"));
+    ASSERT_TRUE(photo.open(QIODevice::ReadOnly));
+    const QByteArray bytes = photo.readAll();
+    photo.close();
+    document.embeddedSource = std::make_shared<const std::vector<uint8_t>>(bytes.begin(), bytes.end());
+    ASSERT_TRUE(saveDocument(document, at("a.tessera")).has_value());
+    const auto saveWithout = [&] {
+        workspace.save(file, false);
+        ASSERT_TRUE(idle());
+    };
+    ASSERT_TRUE(photo.remove());
+    open(file);
+    saveWithout();
+    EXPECT_TRUE(embeds()) << "the file is gone";
+    ASSERT_TRUE(stripes(65, 48).save(path("photo.png")));
+    saveWithout();
+    EXPECT_TRUE(embeds()) << "it is another picture";
+    ASSERT_TRUE(photo.open(QIODevice::WriteOnly));
+    photo.write(bytes);
+    photo.close();
+    saveWithout();
+    EXPECT_FALSE(embeds());
 }
 
 TEST_F(WorkspaceTest, TheSelectionIsCopiedAsAPicture) {
     open(documentFile("a.tessera"));
-    const QImage whole = selectionPicture(*workspace.session());
+    const auto copy = [&] {
+        QImage copied;
+        workspace.drawSelection([&](const QImage& picture) { copied = picture; });
+        EXPECT_TRUE(copied.isNull()) << "the window does not wait for it";
+        EXPECT_TRUE(idle());
+        return copied;
+    };
+    const QImage whole = copy();
     EXPECT_EQ(whole.size(), QSize(40, 30));
     EXPECT_EQ(whole.pixel(3, 3), qRgb(0, 0, 0));
     change();
     // One triangle of the second cell.
     workspace.session()->selection().setPatches({PatchId(3)});
-    const QImage picture = selectionPicture(*workspace.session());
+    const QImage picture = copy();
     EXPECT_EQ(picture.size(), QSize(10, 10));
     EXPECT_EQ(picture.pixelColor(1, 8).alpha(), 255);
     EXPECT_NEAR(picture.pixelColor(1, 8).red(), 128, 1);
@@ -316,10 +521,19 @@ TEST_F(ManyElements, StayAsTheyWereWhereTheJobIsStopped) {
 
 TEST_F(ManyElements, DoNotKeepADocumentFromBeingClosed) {
     workspace.edit(splitPatches(*session));
-    workspace.close(session, answering({.kind = CloseAnswer::Kind::Discard}));
+    workspace.close(session, answering({.kind = CloseAnswer::Kind::Discard}, RunningAnswer::Stop));
     EXPECT_EQ(workspace.session(), nullptr);
     EXPECT_EQ(asked, 0) << "nothing has been changed";
+    EXPECT_EQ(askedAbout, QStringList("Split Patch"));
     EXPECT_TRUE(idle());
+}
+
+TEST_F(ManyElements, GoOnWhereTheDocumentIsKept) {
+    workspace.edit(splitPatches(*session));
+    workspace.close(session, answering({}, RunningAnswer::Cancel));
+    EXPECT_TRUE(workspace.running(JobKind::Edit));
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(session->history().undoText(), "Split Patch");
 }
 
 TEST_F(ManyElements, AFewAreEditedAtOnceAndFailuresAreSaid) {
@@ -330,6 +544,105 @@ TEST_F(ManyElements, AFewAreEditedAtOnceAndFailuresAreSaid) {
     session->selection().clear();
     workspace.edit(splitPatches(*session));
     EXPECT_EQ(said.text, "Select patches first.");
+}
+
+// The last, exact frame of a gesture takes a second for tens of thousands of patches.
+class ManyPatches : public WorkspaceTest {
+  protected:
+    void SetUp() override {
+        WorkspaceTest::SetUp();
+        Document document;
+        document.mesh = testing::gridMesh(240, 160, 60, 40);
+        document.mesh.forEachPatch(
+            [&](PatchId p) { document.mesh.setSpline(p, constantSpline(std::array{.8f, .3f, .2f})); });
+        ASSERT_TRUE(saveDocument(document, at("many.tessera")).has_value());
+        open(path("many.tessera"));
+        session = workspace.session();
+        start = testing::bytesOf(session->document());
+        session->selection().setPatches(allSelectable(session->document().mesh));
+        exact = session->document().mesh;
+        recolour(exact, session->selection().patches(), kGreen);
+    }
+    const FinishGesture finish = [this](std::shared_ptr<EditSession> gesture, ElementEdit edit,
+                                        EditThen then) {
+        workspace.finish(std::move(gesture), std::move(edit), std::move(then));
+    };
+    bool hasColoursOf(const PatchMesh& mesh) const {
+        bool same = true;
+        mesh.forEachPatch(
+            [&](PatchId p) { same = same && mesh.spline(p) == session->document().mesh.spline(p); });
+        return same;
+    }
+
+    const Recolouring kGreen = ReplaceColour{{.2, .8, .3}};
+    const Recolouring kTurned = ColourShift{.hueDegrees = 120};
+    DocumentSession* session = nullptr;
+    std::vector<uint8_t> start;
+    PatchMesh exact;
+};
+
+TEST_F(ManyPatches, AGestureIsEndedByAJobAndShowsWhatItShowedMeanwhile) {
+    RecolourGesture gesture(*session, "Replace Colour");
+    gesture.show(kGreen);
+    const PatchMesh shown = session->document().mesh;
+    gesture.commit(finish);
+    ASSERT_NE(workspace.running(JobKind::Edit), nullptr);
+    EXPECT_TRUE(session->editing());
+    EXPECT_TRUE(hasColoursOf(shown));
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(session->editing());
+    EXPECT_TRUE(hasColoursOf(exact));
+    EXPECT_EQ(session->history().count(), 1);
+    EXPECT_EQ(session->history().undoText(), "Replace Colour");
+    session->history().undo();
+    EXPECT_EQ(testing::bytesOf(session->document()), start);
+    RecolourGesture other(*session, "Replace Colour");
+    other.show(kGreen);
+    other.commit(finish);
+    workspace.cancel();
+    ASSERT_TRUE(idle());
+    EXPECT_FALSE(session->editing());
+    EXPECT_EQ(testing::bytesOf(session->document()), start) << "it was stopped";
+}
+
+TEST_F(ManyPatches, SlidersStayWhereTheyAreUntilTheJobHasEnded) {
+    ColourAdjustment adjustment(*session, session->selection().patches());
+    ASSERT_TRUE(adjustment.begin("Hue", kTurned, {}));
+    adjustment.show(kTurned);
+    bool told = false;
+    adjustment.commit(finish, [&] { told = true; });
+    ASSERT_NE(workspace.running(JobKind::Edit), nullptr);
+    EXPECT_FALSE(told);
+    ASSERT_TRUE(adjustment.value());
+    EXPECT_EQ(std::get<ColourShift>(*adjustment.value()).hueDegrees, 120);
+    EXPECT_FALSE(adjustment.begin("Hue", kTurned, {})) << "one after the other";
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(told);
+    EXPECT_EQ(std::get<ColourShift>(adjustment.value().value()).hueDegrees, 120);
+    session->history().undo();
+    EXPECT_EQ(std::get<ColourShift>(adjustment.value().value()).hueDegrees, 0);
+}
+
+TEST_F(ManyPatches, ASliderGoesBackWithTheJobThatWasToMakeItsStep) {
+    ASSERT_TRUE(
+        applyEdit(*session, "Paint", [](PatchMesh& m) { return testing::paint(m, PatchId(3), .5f); }));
+    ColourAdjustment adjustment(*session, session->selection().patches());
+    ASSERT_TRUE(adjustment.begin("Hue", kTurned, {}));
+    adjustment.show(kTurned);
+    adjustment.commit(finish);
+    // Kept after all.
+    workspace.close(session, answering({CloseAnswer::Kind::Cancel}, RunningAnswer::Stop));
+    EXPECT_EQ(asked, 1);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(std::get<ColourShift>(adjustment.value().value()).hueDegrees, 0);
+    // Its end does not wait for the job, nor the job for it.
+    std::optional<ColourAdjustment> brief(std::in_place, *session, session->selection().patches());
+    ASSERT_TRUE(brief->begin("Hue", kTurned, {}));
+    brief->show(kTurned);
+    brief->commit(finish);
+    brief.reset();
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(session->history().undoText(), "Hue");
 }
 
 }  // namespace

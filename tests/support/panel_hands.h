@@ -43,7 +43,7 @@ struct PanelsTest : ::testing::Test {
     PanelsTest() {
         Document document;
         document.mesh = stripes();
-        session = std::make_unique<DocumentSession>(document, Photo{}, QString(), QString());
+        session = std::make_unique<DocumentSession>(document, Photo{}, QString());
         tools.setSession(session.get());
         start = bytes();
     }

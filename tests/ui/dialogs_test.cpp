@@ -353,7 +353,7 @@ TEST(KeyPresets, ConflictsAreFound) {
 class PreferencesTest : public ::testing::Test {
   protected:
     void SetUp() override {
-        settings.clearKeys();
+        for (const KeyRow& row : keyRows()) settings.setKey(row.name, {});
         settings.setKeyPreset(KeyPreset::Tessera);
         settings.setTheme(Theme::Dark);
         dialog = std::make_unique<PreferencesDialog>(keyRows(), settings);
@@ -363,7 +363,7 @@ class PreferencesTest : public ::testing::Test {
         key = dialog->findChild<KeyEdit*>();
     }
     void TearDown() override {
-        settings.clearKeys();
+        for (const KeyRow& row : keyRows()) settings.setKey(row.name, {});
         settings.setKeyPreset(KeyPreset::Tessera);
         settings.setTheme(Theme::Dark);
     }

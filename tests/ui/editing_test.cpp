@@ -175,7 +175,7 @@ TEST_F(Editing, ThePanelSaysWhenThePhotoIsMissing) {
     auto* find = window->panel().findChild<QPushButton*>("findPhoto");
     ASSERT_NE(find, nullptr);
     EXPECT_FALSE(find->isVisible());
-    session()->setPhoto({}, photo);
+    session()->relinkPhoto({}, session()->document().source);
     EXPECT_TRUE(find->isVisible());
     workspace().relinkPhoto(photo);
     ASSERT_TRUE(idle());

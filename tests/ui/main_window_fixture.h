@@ -15,6 +15,7 @@
 #include <QTimer>
 #include <QWheelEvent>
 #include <cmath>
+#include <functional>
 
 #include "app/settings.h"
 #include "ui/action_table.h"
@@ -97,6 +98,20 @@ class MainWindowTest : public ::testing::Test {
         ASSERT_TRUE(enter.isAccepted());
         QDropEvent event({200, 200}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
         QApplication::sendEvent(window.get(), &event);
+    }
+    // Hands the next dialog of this type to `act`, once it is there.
+    template <class Dialog>
+    void whenAsked(std::function<void(Dialog&)> act) {
+        auto* timer = new QTimer(window.get());
+        QObject::connect(timer, &QTimer::timeout, timer, [timer, act = std::move(act)] {
+            auto* dialog = qobject_cast<Dialog*>(QApplication::activeModalWidget());
+            if (!dialog || !dialog->isVisible()) return;
+            const auto run = act;
+            timer->stop();
+            timer->deleteLater();
+            run(*dialog);
+        });
+        timer->start(20);
     }
     // Presses a button of the next question.
     void answer(QMessageBox::StandardButton button) {

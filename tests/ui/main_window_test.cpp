@@ -2,12 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <QComboBox>
+#include <QDialogButtonBox>
 #include <QDir>
 #include <QDoubleSpinBox>
 #include <QFile>
+#include <QFileDialog>
 #include <QLabel>
+#include <QLineEdit>
 #include <QSlider>
 #include <QSpinBox>
+#include <QTabBar>
+#include <QToolButton>
 
 #include "app/recovery_store.h"
 #include "core/export/rasterize.h"
@@ -389,6 +394,69 @@ TEST_F(MainWindowTest, SavesAndOpensAgain) {
     EXPECT_LT(difference(grab(), before), .3) << "the file holds colours to a tenth of a level";
 }
 
+// Types a name into a file dialog.
+void choose(QFileDialog& dialog, const QString& path) {
+    auto* name = dialog.findChild<QLineEdit*>("fileNameEdit");
+    ASSERT_NE(name, nullptr);
+    name->setText(path);  // typing would open the list of completions
+    QTest::mouseClick(dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Save), Qt::LeftButton);
+}
+
+// A file that only the name with its suffix leads to is asked about like any other.
+TEST_F(MainWindowTest, NamesWithoutTheirSuffixReplaceNothingUnasked) {
+    openPhoto();
+    vectorize();
+    const QString taken = folder.filePath("taken.tessera");
+    {
+        QFile file(taken);
+        ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+        file.write("precious");
+    }
+    bool asked = false;
+    whenAsked<QFileDialog>([&](QFileDialog& dialog) {
+        whenAsked<QMessageBox>([&](QMessageBox& box) {
+            asked = true;
+            EXPECT_TRUE(box.text().contains("taken.tessera")) << box.text().toStdString();
+            whenAsked<QFileDialog>([&](QFileDialog& again) { QTest::keyClick(&again, Qt::Key_Escape); });
+            QTest::mouseClick(box.button(QMessageBox::No), Qt::LeftButton);
+        });
+        choose(dialog, folder.filePath("taken"));
+    });
+    action(ActionId::SaveAs)->trigger();
+    EXPECT_TRUE(asked);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(QFileInfo(taken).size(), 8);
+    EXPECT_TRUE(session()->modified());
+    whenAsked<QFileDialog>([&](QFileDialog& dialog) { choose(dialog, folder.filePath("disk.v2")); });
+    action(ActionId::SaveAs)->trigger();
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(QFile::exists(folder.filePath("disk.v2.tessera"))) << "v2 is no suffix of ours";
+}
+
+TEST_F(MainWindowTest, ExportAgainIsAboutTheDocumentInFront) {
+    const QString second = folder.filePath("second.png"), out = folder.filePath("out.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    openPhoto();
+    vectorize();
+    EXPECT_FALSE(action(ActionId::ExportAgain)->isEnabled());
+    workspace().exportPicture({.path = out, .options = {}});
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(action(ActionId::ExportAgain)->isEnabled());
+    const QImage first(out);
+    window->open(second);
+    ASSERT_TRUE(idle());
+    vectorize();
+    EXPECT_FALSE(action(ActionId::ExportAgain)->isEnabled()) << "it has never been exported";
+    action(ActionId::ExportAgain)->trigger();
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(QImage(out), first);
+    QTest::mouseClick(&window->tabs(), Qt::LeftButton, {}, window->tabs().tabRect(0).center());
+    ASSERT_TRUE(QFile::remove(out));
+    action(ActionId::ExportAgain)->trigger();
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(QImage(out), first);
+}
+
 TEST_F(MainWindowTest, AFailedSaveSaysSoAndKeepsTheChanges) {
     openPhoto();
     vectorize();
@@ -429,6 +497,78 @@ TEST_F(MainWindowTest, AMessageLeavesThePictureWhereItIs) {
     EXPECT_TRUE(window->messages().geometry().intersects(before));
 }
 
+// What a vectorization has found is thrown away by the person only.
+TEST_F(MainWindowTest, AQuestionWaitsUntilItIsAnswered) {
+    ASSERT_TRUE(disk(600, 450).save(photo));
+    openPhoto();
+    vectorize();
+    const uint64_t first = session()->revision();
+    QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+    ASSERT_TRUE(workspace().running(JobKind::Vectorize));
+    QTest::keyClick(&canvas(), Qt::Key_Z, Qt::ControlModifier);
+    ASSERT_NE(session()->revision(), first);
+    ASSERT_TRUE(idle());
+    ASSERT_FALSE(session()->hasMesh());
+    MessageBar& bar = window->messages();
+    const QString question = bar.text();
+    EXPECT_TRUE(question.contains("disk.png")) << question.toStdString();
+    bar.show({.text = "Something else."});
+    EXPECT_EQ(bar.text(), "Something else.");
+    auto* close = bar.findChild<QToolButton*>();
+    QTest::mouseClick(close, Qt::LeftButton);
+    EXPECT_EQ(bar.text(), question);
+    const QString second = folder.filePath("second.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    window->open(second);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(bar.text(), "") << "it is about the other one";
+    vectorize();
+    QTest::mouseClick(&window->tabs(), Qt::LeftButton, {}, window->tabs().tabRect(0).center());
+    EXPECT_EQ(bar.text(), question);
+    QTest::mouseClick(bar.findChild<QPushButton*>(), Qt::LeftButton);
+    EXPECT_TRUE(session()->hasMesh());
+    EXPECT_EQ(bar.text(), "");
+}
+
+TEST_F(MainWindowTest, QuestionsEndWithTheirDocument) {
+    openPhoto();
+    MessageBar& bar = window->messages();
+    bar.show({.text = "First?", .actionText = "Yes", .action = [] {}, .keep = true, .about = session()});
+    bar.show({.text = "Second?", .actionText = "Yes", .action = [] {}, .keep = true});
+    EXPECT_EQ(bar.text(), "First?");
+    QTest::keyClick(&canvas(), Qt::Key_W, Qt::ControlModifier);
+    EXPECT_EQ(session(), nullptr);
+    EXPECT_EQ(bar.text(), "Second?");
+}
+
+TEST_F(MainWindowTest, NewShowsTheStartPageInATabOfItsOwn) {
+    auto* start = window->findChild<StartPage*>();
+    openPhoto();
+    DocumentSession* const first = session();
+    QTest::keyClick(&canvas(), Qt::Key_N, Qt::ControlModifier);
+    EXPECT_EQ(session(), nullptr);
+    EXPECT_TRUE(start->isVisible());
+    QTabBar& tabs = window->tabs();
+    ASSERT_EQ(tabs.count(), 2);
+    EXPECT_EQ(tabs.currentIndex(), 1);
+    QTest::mouseClick(&tabs, Qt::LeftButton, {}, tabs.tabRect(0).center());
+    EXPECT_EQ(session(), first);
+    EXPECT_FALSE(start->isVisible());
+    EXPECT_EQ(tabs.count(), 1);
+    action(ActionId::New)->trigger();
+    action(ActionId::Close)->trigger();
+    EXPECT_EQ(session(), first) << "there was nothing else to close";
+    action(ActionId::New)->trigger();
+    const QString second = folder.filePath("second.png");
+    ASSERT_TRUE(disk(90, 70).save(second));
+    window->open(second);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(session()->width(), 90);
+    ASSERT_EQ(tabs.count(), 2);
+    EXPECT_EQ(tabs.tabText(1), "second.png");
+    EXPECT_FALSE(start->isVisible());
+}
+
 TEST_F(MainWindowTest, OpensWhatIsDropped) {
     drop(photo);
     ASSERT_TRUE(idle());
@@ -460,6 +600,23 @@ TEST_F(MainWindowTest, AsksBeforeChangesAreLost) {
     EXPECT_FALSE(window->close());
     EXPECT_TRUE(window->isVisible());
     answer(QMessageBox::Discard);
+    window->close();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return !window->isVisible(); }, kWaitMs));
+}
+
+TEST_F(MainWindowTest, AsksBeforeAVectorizationIsLost) {
+    ASSERT_TRUE(disk(1200, 900).save(photo));
+    openPhoto();
+    QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+    answer(QMessageBox::Cancel);
+    EXPECT_FALSE(window->close());
+    EXPECT_TRUE(workspace().running(JobKind::Vectorize));
+    QTimer::singleShot(100, window.get(), [] {
+        auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+        ASSERT_NE(box, nullptr);
+        EXPECT_TRUE(box->text().contains("Vectorizing disk.png")) << box->text().toStdString();
+        QTest::mouseClick(box->findChild<QPushButton*>("stop"), Qt::LeftButton);
+    });
     window->close();
     EXPECT_TRUE(QTest::qWaitFor([&] { return !window->isVisible(); }, kWaitMs));
 }

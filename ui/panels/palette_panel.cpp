@@ -15,6 +15,7 @@
 #include "app/settings.h"
 #include "app/tools/tool_manager.h"
 #include "ui/conversions.h"
+#include "ui/dialogs/save_path.h"
 #include "ui/panels/colour_popup.h"
 #include "ui/panels/panel_parts.h"
 #include "ui/panels/swatch_button.h"
@@ -232,7 +233,8 @@ void PalettePanel::select(int entry, Qt::KeyboardModifiers modifiers) {
 }
 
 void PalettePanel::edit(int entry) {
-    if (!mSession || mSession->editing()) return;
+    if (!mSession) return;
+    if (mSession->editing()) return emit said(asSentence(refusedMeanwhile().value().message));
     const auto* button = qobject_cast<SwatchButton*>(mEntries->itemAt(entry)->widget());
     mEntry = entry;
     highlight(-1);  // the colours shall be seen as they will be
@@ -242,31 +244,21 @@ void PalettePanel::edit(int entry) {
 
 void PalettePanel::preview(glm::dvec3 colour) {
     if (!mSession) return;
-    if (!mEdit) {
+    if (!mGesture) {
         if (mSession->editing()) return;
-        mEdit.emplace(*mSession, tr("Change Palette Colour"));
         PatchSet all;
-        mEdit->start().forEachPatch([&](PatchId p) { all.push_back(p); });
-        mRecolourer.emplace(mEdit->start(), std::move(all));
+        mSession->document().mesh.forEachPatch([&](PatchId p) { all.push_back(p); });
+        mGesture.emplace(*mSession, tr("Change Palette Colour"), std::move(all));
     }
-    draw(colour, &Recolourer::preview);
-}
-
-void PalettePanel::draw(glm::dvec3 colour,
-                        Touched (Recolourer::*recolour)(PatchMesh&, const Recolouring&) const) {
-    // Recolourings have no way to fail.
-    (void)mEdit->preview([&](PatchMesh& mesh) -> Result<Touched> {
-        return ((*mRecolourer).*recolour)(mesh, PaletteShift{mPalette, mEntry, colour});
-    });
+    mGesture->show(PaletteShift{mPalette, mEntry, colour});
 }
 
 void PalettePanel::finishEdit(std::optional<glm::dvec3> colour) {
-    if (mEdit && colour) {
-        draw(*colour, &Recolourer::apply);
-        mEdit->commit();
+    if (mGesture && colour) {
+        mGesture->show(PaletteShift{mPalette, mEntry, *colour});
+        mGesture->commit(mTools ? mTools->finish() : finishNow);
     }
-    mEdit.reset();
-    mRecolourer.reset();
+    mGesture.reset();
 }
 
 void PalettePanel::useColour(glm::dvec3 colour) {
@@ -315,11 +307,9 @@ void PalettePanel::askImport() {
 }
 
 void PalettePanel::askExport() {
-    QString path = QFileDialog::getSaveFileName(
-        this, tr("Export Swatches"), Settings().folder() + "/swatches.gpl", tr("GIMP palettes (*.gpl)"));
-    if (path.isEmpty()) return;
-    if (!path.endsWith(".gpl", Qt::CaseInsensitive)) path += ".gpl";
-    exportTo(path);
+    const QString path = askForSavePath(this, tr("Export Swatches"), Settings().folder() + "/swatches.gpl",
+                                        tr("GIMP palettes (*.gpl)"));
+    if (!path.isEmpty()) exportTo(path);
 }
 
 }  // namespace tessera

@@ -6,10 +6,9 @@
 #include <QWidget>
 #include <optional>
 
-#include "app/edit_session.h"
+#include "app/recolour_gesture.h"
 #include "app/swatch_store.h"
 #include "core/edit/palette.h"
-#include "core/edit/recolour.h"
 
 class QGridLayout;
 class QLabel;
@@ -35,7 +34,7 @@ class PalettePanel : public QWidget {
 
     // Null for none.
     void setSession(DocumentSession* session);
-    // Whose colour swatches set; outlives the panel.
+    // Whose colour swatches set, and which end gestures; outlives the panel.
     void setToolOptions(ToolManager& tools) { mTools = &tools; }
 
     // Whether the colours shown are those of the document as it is.
@@ -66,7 +65,6 @@ class PalettePanel : public QWidget {
     void select(int entry, Qt::KeyboardModifiers modifiers);
     void edit(int entry);
     void preview(glm::dvec3 colour);
-    void draw(glm::dvec3 colour, Touched (Recolourer::*recolour)(PatchMesh&, const Recolouring&) const);
     void finishEdit(std::optional<glm::dvec3> colour);
     void useColour(glm::dvec3 colour);
     void showSwatches();
@@ -85,8 +83,7 @@ class PalettePanel : public QWidget {
 
     // While a colour is being changed.
     int mEntry = 0;
-    std::optional<EditSession> mEdit;
-    std::optional<Recolourer> mRecolourer;
+    std::optional<RecolourGesture> mGesture;
 
     QSpinBox* mColours = nullptr;
     QLabel* mHint = nullptr;

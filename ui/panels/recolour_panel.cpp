@@ -183,7 +183,7 @@ void RecolourPanel::addSlider(QGridLayout* grid, Row row, const QString& name, c
         if (mAdjustment) mAdjustment->show(recolouring(row));
     });
     connect(slider, &GestureSlider::ended, this, [this] {
-        if (mAdjustment) mAdjustment->commit();
+        if (mAdjustment) mAdjustment->commit(finish(), [this] { showValues(); });
         showValues();
     });
     connect(slider, &GestureSlider::cancelled, this, [this] {
@@ -225,7 +225,7 @@ void RecolourPanel::connectReplace() {
     connect(mMean, &ColourField::chosen, this, [this](glm::dvec3 colour) {
         if (!mReplace) return replaceBy(colour);
         mReplace->show(ReplaceColour{colour});
-        mReplace->commit();
+        mReplace->commit(finish());
         mReplace.reset();
     });
     connect(mMean, &ColourField::abandoned, this, [this] { mReplace.reset(); });
@@ -243,6 +243,8 @@ void RecolourPanel::setSession(DocumentSession* session) {
         connect(session, &DocumentSession::changed, this, [this](const Change& change) {
             if (change.mesh() && !change.preview) refreshSoon();
         });
+        // What a job was to end may have been stopped.
+        connect(session, &DocumentSession::editingChanged, this, [this] { refreshSoon(); });
         connect(&session->selection(), &Selection::changed, this, [this] {
             finishAdjustment();
             refreshSoon();
@@ -256,6 +258,10 @@ void RecolourPanel::setToolOptions(ToolManager& tools) {
     mTools = &tools;
     connect(&tools, &ToolManager::optionsChanged, this, &RecolourPanel::showOptions);
     showOptions();
+}
+
+FinishGesture RecolourPanel::finish() const {
+    return mTools ? mTools->finish() : finishNow;
 }
 
 void RecolourPanel::setColours(glm::dvec3 colour, glm::dvec3 second) {
@@ -302,8 +308,7 @@ void RecolourPanel::beginRow(Row row, const QString& text) {
     if (!mAdjustment) mAdjustment.emplace(*mSession, mSession->selection().patches());
     const Recolouring kind = recolouring(row);
     if (!mAdjustment->begin(text, kind, recolourOptions())) {
-        emit said(tr("Another change is under way; finish it and try again."));
-        return;
+        return say(refusedMeanwhile());
     }
     // Those of other kinds are neutral again: what they did is what this begins with.
     for (int other = 0; other < RowCount; ++other)

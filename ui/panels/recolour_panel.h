@@ -31,7 +31,7 @@ class RecolourPanel : public LazyPanel {
 
     // Null for none.
     void setSession(DocumentSession* session);
-    // Whose colours and feather the panel shows and sets; outlives it.
+    // Whose colours and feather the panel shows and sets, and which end its gestures; outlives it.
     void setToolOptions(ToolManager& tools);
 
   signals:
@@ -57,6 +57,7 @@ class RecolourPanel : public LazyPanel {
     // What the sliders of the row's kind say.
     Recolouring recolouring(Row row) const;
     RecolourOptions recolourOptions() const;
+    FinishGesture finish() const;
     void beginRow(Row row, const QString& text);
     void finishAdjustment();
     void showValues();

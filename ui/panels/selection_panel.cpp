@@ -12,6 +12,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "app/message.h"
 #include "app/selection_actions.h"
 #include "app/tools/tool_manager.h"
 #include "ui/action_table.h"
@@ -162,7 +163,7 @@ QWidget* SelectionPanel::makeStoredPart() {
         if (mSession) recallSelection(*mSession, name, mode);
     });
     connect(mStored, &StoredList::removed, this, [this](const QString& name) {
-        if (mSession) removeStoredSelection(*mSession, name);
+        if (mSession) sayFailure(removeStoredSelection(*mSession, name));
     });
     return part;
 }
@@ -232,10 +233,14 @@ QString SelectionPanel::freeName() const {
     }
 }
 
+void SelectionPanel::sayFailure(const Result<void>& result) {
+    if (!result) emit said(asSentence(result.error().message));
+}
+
 void SelectionPanel::store() {
     if (!mSession) return;
     const QString name = freeName();
-    storeSelection(*mSession, name);
+    sayFailure(storeSelection(*mSession, name));
     const auto items = mStored->findItems(name, Qt::MatchExactly);
     if (items.isEmpty()) return;
     // The name can be typed at once.
@@ -250,8 +255,9 @@ void SelectionPanel::rename(QListWidgetItem* item) {
     // The list is filled anew by the rename itself; not under the editor that is closing.
     QTimer::singleShot(0, this, [this, from, to] {
         if (!mSession || from == to) return fillStored();
-        if (renameStoredSelection(*mSession, from, to)) return;
-        if (!to.isEmpty()) emit said(tr("There is a selection named \"%1\" already.").arg(to));
+        const Result<void> renamed = renameStoredSelection(*mSession, from, to);
+        if (renamed) return;
+        if (!to.isEmpty()) sayFailure(renamed);
         fillStored();
     });
 }

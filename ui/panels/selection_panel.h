@@ -5,6 +5,7 @@
 #include <QPointer>
 
 #include "app/selection.h"
+#include "core/base/result.h"
 #include "ui/panels/lazy_panel.h"
 
 class QLabel;
@@ -62,6 +63,7 @@ class SelectionPanel : public LazyPanel {
     void refresh() override;
     void fillStored();
     void store();
+    void sayFailure(const Result<void>& result);
     void rename(QListWidgetItem* item);
     // The first "Selection N" that is free.
     QString freeName() const;

@@ -84,7 +84,7 @@ void run(DocumentSession& session) {
                     [&](int i) { gesture.show(ColourShift{10. * i + 5, 1, 0}); });
         printFrames("tint of all patches, a frame", 5,
                     [&](int i) { gesture.show(Tint{{1, 0, 0}, .1 * i + .1}); });
-        print("its end", [&] { gesture.commit(); });
+        print("its end", [&] { gesture.commit(finishNow); });
     }
     std::printf("%-44s %8.2f MB\n", "held by that step", double(session.history().bytes()) / (1 << 20));
     print("undo", [&] { session.history().undo(); });
@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
     }
     std::printf("%zu patches, %d x %d\n", document.mesh.patchCount(), document.mesh.width(),
                 document.mesh.height());
-    DocumentSession session(std::move(document), {}, {}, {});
+    DocumentSession session(std::move(document), {}, {});
     run(session);
     return 0;
 }
