@@ -83,7 +83,10 @@ void Job::start(std::function<Result<T>(Progress&)> work, std::function<void(Res
                 box->emplace(tl::unexpected<Error>(translateException()));
             }
         },
-        [deliver = std::move(deliver), box] { deliver(std::move(**box)); });
+        [this, deliver = std::move(deliver), box] {
+            // It may have been done by the time that it was asked to stop.
+            deliver(stopRequested() && box->value() ? Result<T>(stopped()) : std::move(**box));
+        });
 }
 
 }  // namespace tessera
