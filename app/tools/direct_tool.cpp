@@ -210,7 +210,9 @@ void DirectTool::finish() {
     if (options().refitAfterReshape && photo && photo->channels() == mesh().channels() &&
         moved.size() <= kMostRefitted) {
         // What shows the photo is asked of the start: the reshape itself has moved colours off it.
-        const PatchSet refitted = showingPhoto(mEdit->start(), *photo, moved);
+        const auto& fitted = session().document().fitted;
+        const PatchSet refitted =
+            showingPhoto(mEdit->start(), fitted ? *fitted : mEdit->start(), *photo, moved);
         if (!refitted.empty())
             report(mEdit->preview([&](PatchMesh& mesh) {
                 const Touched dragged = mDrag->drag(mesh, mOffset, mBreakJoins).touched;

@@ -6,14 +6,16 @@
 #include <unordered_map>
 
 #include "core/edit/colour_samples.h"
+#include "core/edit/drag_colour.h"
 #include "core/image/oklab.h"
 
 namespace tessera {
 
 namespace {
 
-// Far above what a fit of few patches leaves, below what one recolours for.
-constexpr double kMostDistance = .1;  // mean, in OKLab
+// Of patches that an edit has given other colours: what a refit leaves of most textures. A finer recolouring
+// than that is hard to see.
+constexpr double kMostDistance = .03;  // mean, in OKLab
 constexpr int kSamplesASide = 4;
 
 bool showsPhoto(const PatchMesh& mesh, const Image& photo, PatchId p) {
@@ -34,12 +36,15 @@ bool showsPhoto(const PatchMesh& mesh, const Image& photo, PatchId p) {
 
 }  // namespace
 
-PatchSet showingPhoto(const PatchMesh& mesh, const Image& photo, const PatchSet& set) {
+PatchSet showingPhoto(const PatchMesh& mesh, const PatchMesh& fitted, const Image& photo,
+                      const PatchSet& set) {
     const HalfedgeMesh& connectivity = mesh.connectivity();
     std::unordered_map<PatchId, bool> known;
     const auto shows = [&](PatchId p) {
         const auto [entry, isNew] = known.try_emplace(p, false);
-        if (isNew) entry->second = showsPhoto(mesh, photo, p);
+        if (isNew)
+            entry->second = (hasFitted(mesh, fitted, p) && mesh.spline(p) == fitted.spline(p)) ||
+                            showsPhoto(mesh, photo, p);
         return entry->second;
     };
     PatchSet result = set;

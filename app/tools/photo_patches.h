@@ -6,8 +6,10 @@
 
 namespace tessera {
 
-// Those of the set whose own colours and whose neighbours' are near the photo's, so that refitting them and
-// the ring around them takes back no recolouring. `photo` has the mesh's size.
-PatchSet showingPhoto(const PatchMesh& mesh, const Image& photo, const PatchSet& set);
+// Those of the set whose own colours and whose neighbours' are the ones of `fitted`, the mesh as it was
+// vectorized, or as near to the photo's as a refit's: so that refitting them and the ring around them takes
+// back no recolouring. `photo` has the mesh's size.
+PatchSet showingPhoto(const PatchMesh& mesh, const PatchMesh& fitted, const Image& photo,
+                      const PatchSet& set);
 
 }  // namespace tessera

@@ -8,6 +8,7 @@
 #include "app/tools/blur_tool.h"
 #include "app/tools/colour_at.h"
 #include "app/tools/tool_manager.h"
+#include "core/edit/recolour.h"
 #include "core/image/oklab.h"
 #include "core/mesh/mesh_validate.h"
 #include "tests/support/edits.h"
@@ -201,6 +202,36 @@ TEST_F(ToolsTest, AVertexIsDragged) {
     EXPECT_EQ(bytes(), start);
     history().redo();
     EXPECT_EQ(bytes(), moved);
+}
+
+// Colours are fitted anew where they were the photo's, even those that never came near it, and stay where a
+// person has changed them, even by little.
+TEST_F(ToolsTest, AReshapeTakesNoRecolouringBack) {
+    const auto relink = [&](float red, float perX) {
+        const auto colour = [=](double x, double, int c) {
+            return c == 0 ? double(red) + double(perX) * x : c == 1 ? .3 : .2;
+        };
+        session->relinkPhoto(
+            {std::make_shared<const Image>(testing::paint(kWidth, kHeight, 3, colour)), nullptr, nullptr},
+            {});
+    };
+    tools.setTool(ToolId::Direct);
+    const VertexId v = vertex(1, 2);
+    const glm::dvec2 from = place(v), to = from + glm::dvec2(6, 3), probe = from + glm::dvec2(-4, 1);
+    const auto red = [&] { return colourAt(*session, probe, ColourSource::Vector).value().x; };
+    relink(.5f, .004f);
+    pointer.drag(from, to);
+    EXPECT_NEAR(red(), .5 + .004 * probe.x, .02) << "it was .8 as it was vectorized";
+    history().undo();
+    ASSERT_NEAR(red(), .8, 1e-6);
+
+    relink(.8f, 0);
+    ASSERT_TRUE(applyEdit(*session, "Levels",
+                          [](PatchMesh& m) { return recolour(m, allSelectable(m), Levels{.05, 0}); }));
+    ASSERT_NEAR(red(), .85, 1e-6);
+    pointer.drag(from, to);
+    EXPECT_EQ(place(v), to);
+    EXPECT_NEAR(red(), .85, 1e-6);
 }
 
 TEST_F(ToolsTest, ADragIsHeldByTheCertificate) {
