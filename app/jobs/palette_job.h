@@ -6,7 +6,8 @@
 
 namespace tessera {
 
-// `count` as in palette().
-Job* startPaletteJob(QObject* owner, PatchMesh mesh, int count, std::function<void(Result<Palette>)> deliver);
+// `count` and `like` as in palette().
+Job* startPaletteJob(QObject* owner, PatchMesh mesh, int count, std::vector<glm::dvec3> like,
+                     std::function<void(Result<Palette>)> deliver);
 
 }  // namespace tessera

@@ -45,9 +45,8 @@ size_t nearestOf(const std::vector<glm::dvec3>& means, glm::dvec3 lab) {
     return best;
 }
 
-// One after the other the colour that is worst served by those so far, by its weight; first the mean's
-// nearest.
-std::vector<glm::dvec3> firstMeans(const std::vector<Weighted>& colours, size_t count) {
+// The colour that is nearest to the mean of all.
+glm::dvec3 middleOf(const std::vector<Weighted>& colours) {
     glm::dvec3 sum(0);
     double weight = 0;
     for (const Weighted& c : colours) {
@@ -55,11 +54,34 @@ std::vector<glm::dvec3> firstMeans(const std::vector<Weighted>& colours, size_t 
         weight += c.weight;
     }
     const glm::dvec3 mean = sum / weight;
-    const auto middle = std::min_element(colours.begin(), colours.end(), [&](const auto& a, const auto& b) {
-        return squaredDistance(a.lab, mean) < squaredDistance(b.lab, mean);
-    });
-    std::vector<glm::dvec3> means{middle->lab};
+    return std::min_element(colours.begin(), colours.end(),
+                            [&](const auto& a, const auto& b) {
+                                return squaredDistance(a.lab, mean) < squaredDistance(b.lab, mean);
+                            })
+        ->lab;
+}
+
+// Those of the means that a colour is nearest to.
+std::vector<glm::dvec3> present(const std::vector<Weighted>& colours, const std::vector<glm::dvec3>& means) {
+    std::vector<bool> has(means.size(), false);
+    for (const Weighted& c : colours) has[nearestOf(means, c.lab)] = true;
+    std::vector<glm::dvec3> kept;
+    for (size_t k = 0; k < means.size(); ++k)
+        if (has[k]) kept.push_back(means[k]);
+    return kept;
+}
+
+// To the means given (or the middle one) one after the other the colour that is worst served by those so far,
+// by its weight.
+std::vector<glm::dvec3> firstMeans(const std::vector<Weighted>& colours, std::vector<glm::dvec3> means,
+                                   size_t count) {
+    if (!means.empty()) means = present(colours, means);
+    if (means.size() > count) means.resize(count);
+    if (means.empty()) means.push_back(middleOf(colours));
     std::vector<double> distance(colours.size(), std::numeric_limits<double>::infinity());
+    for (size_t k = 0; k + 1 < means.size(); ++k)
+        for (size_t i = 0; i < colours.size(); ++i)
+            distance[i] = std::min(distance[i], squaredDistance(colours[i].lab, means[k]));
     while (means.size() < count) {
         size_t worst = 0;
         double most = -1;
@@ -109,7 +131,8 @@ double spreadOf(const std::vector<glm::dvec3>& means) {
 
 }  // namespace
 
-Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count) {
+Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count,
+                std::span<const glm::dvec3> like) {
     std::vector<Weighted> all;
     double total = 0;
     mesh.forEachPatch([&](PatchId p) {
@@ -121,7 +144,10 @@ Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count) {
     Palette result;
     result.nearest.assign(mesh.connectivity().faceCapacity(), Palette::kNone);
     if (all.empty()) return result;
-    auto means = firstMeans(all, size_t(std::clamp(count, Palette::kLeast, Palette::kMost)));
+    std::vector<glm::dvec3> likeThese;
+    for (const glm::dvec3 colour : like) likeThese.push_back(toOklab(colour));
+    auto means =
+        firstMeans(all, std::move(likeThese), size_t(std::clamp(count, Palette::kLeast, Palette::kMost)));
     improve(all, means);
     result.spread = spreadOf(means);
 

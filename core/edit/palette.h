@@ -27,8 +27,11 @@ struct Palette {
 };
 
 // By k-means in OKLab over the patches' mean colours, weighted by area and chroma. `count` is brought into
-// kLeast..kMost; fewer entries where there are fewer colours. The same for the same colours.
-Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count);
+// kLeast..kMost; fewer entries where there are fewer colours. The search begins from `like` (gamma-encoded
+// sRGB) as far as they are colours of the picture: so entries stay what they are through an edit. The same
+// for the same arguments.
+Palette palette(const PatchMesh& mesh, const PatchColours& colours, int count,
+                std::span<const glm::dvec3> like = {});
 
 // How much of an entry is in each of `count` colours, all in OKLab, the colours in three planes: the shares
 // of all entries are at least 0, 1 in sum, and continuous.

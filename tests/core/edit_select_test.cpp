@@ -13,6 +13,7 @@
 
 #include "core/edit/enclosed_region.h"
 #include "core/edit/palette.h"
+#include "core/image/oklab.h"
 #include "tests/support/edit_meshes.h"
 #include "tests/support/test_meshes.h"
 
@@ -156,6 +157,29 @@ TEST(Palette, FindsTheColoursThatThereAre) {
     EXPECT_NEAR(weight, 1, 1e-9);
     EXPECT_EQ(patchesOf(found, 0).size(), 100U);
     EXPECT_EQ(found.nearest, palette(mesh, means, 8).nearest);
+}
+
+// A colour that a person has made is no more one of the dominant ones, and stays an entry all the same.
+TEST(Palette, EntriesStayThroughAnEdit) {
+    PatchMesh mesh = gridMesh(100, 100, 10, 10);
+    const std::array own{.5F, .35F, .55F};
+    for (uint32_t p = 0; p < 200; ++p)
+        paintPatch(mesh, p, p < 190 ? std::array{float(p) / 190, .2F, 1 - float(p) / 190} : own);
+    const PatchColours means(mesh);
+    const glm::dvec3 wanted(own[0], own[1], own[2]);
+    const auto nearestTo = [&](const Palette& found) {
+        double nearest = 1;
+        for (const PaletteEntry& e : found.entries)
+            nearest = std::min(nearest, glm::distance(toOklab(e.colour), toOklab(wanted)));
+        return nearest;
+    };
+    const Palette fresh = palette(mesh, means, 5);
+    ASSERT_GT(nearestTo(fresh), .03);
+    std::vector<glm::dvec3> like{wanted, {-1, 5, 9}};  // the second is none of the picture's
+    for (const PaletteEntry& e : fresh.entries) like.push_back(e.colour);
+    const Palette found = palette(mesh, means, 6, like);
+    EXPECT_LT(nearestTo(found), .02);
+    EXPECT_EQ(found.entries.size(), 6U);
 }
 
 // Shares of the entries in colours near to and far from all of them.

@@ -171,13 +171,17 @@ void PalettePanel::find() {
     }
     const uint64_t revision = mSession->revision();
     const int count = mColours->value();
-    mJob = startPaletteJob(this, mSession->document().mesh, count, [=, this](const Result<Palette>& found) {
+    std::vector<glm::dvec3> like;
+    if (count == mCount)
+        for (const PaletteEntry& entry : mPalette.entries) like.push_back(entry.colour);
+    const auto show = [=, this](const Result<Palette>& found) {
         if (!found || !mSession || mSession->revision() != revision || mSession->editing()) return;
         mPalette = *found;
         mRevision = revision;
         mCount = count;
         showPalette();
-    });
+    };
+    mJob = startPaletteJob(this, mSession->document().mesh, count, std::move(like), show);
 }
 
 void PalettePanel::showPalette() {
@@ -257,6 +261,7 @@ void PalettePanel::finishEdit(std::optional<glm::dvec3> colour) {
     if (mGesture && colour) {
         mGesture->show(PaletteShift{mPalette, mEntry, *colour});
         mGesture->commit(mTools ? mTools->finish() : finishNow);
+        mPalette.entries[size_t(mEntry)].colour = *colour;  // what is found next is like this
     }
     mGesture.reset();
 }
