@@ -48,10 +48,13 @@ std::vector<ControlPointRef> DirectTool::shownPoints() const {
     const Selection& selection = session().selection();
     const HalfedgeMesh& connectivity = mesh().connectivity();
     std::vector<ControlPointRef> shown = selection.points();
-    for (const ControlPointRef& point : selection.points())
-        if (isVertex(point))
-            connectivity.forEachOutgoing(
-                point.vertex, [&](HalfedgeId h) { shown.push_back(ControlPointRef::of(h)); });
+    for (const ControlPointRef& point : selection.points()) {
+        VertexId vertex = point.vertex;  // or that of a handle, whose others stay
+        if (point.halfedge.valid()) vertex = connectivity.origin(point.halfedge);
+        if (vertex.valid())
+            connectivity.forEachOutgoing(vertex,
+                                         [&](HalfedgeId h) { shown.push_back(ControlPointRef::of(h)); });
+    }
     for (const EdgeId e : selection.curves())
         for (const ControlPointRef& point : controlPointsOf(mesh(), e)) shown.push_back(point);
     std::sort(shown.begin(), shown.end());

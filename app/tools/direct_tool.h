@@ -44,7 +44,8 @@ class DirectTool : public DragTool {
     };
 
     Target targetAt(const ToolEvent& event) const;
-    // The handles that can be seen, and so taken hold of: of selected vertices and curves, and selected ones.
+    // The handles that can be seen, and so taken hold of: of selected vertices and curves, and selected ones
+    // with the others at their vertex.
     std::vector<ControlPointRef> shownPoints() const;
     std::optional<ControlPointRef> nearestShown(glm::dvec2 point, double radiusPx) const;
     std::optional<ControlPointRef> nearestVertex(glm::dvec2 point, double radiusPx) const;

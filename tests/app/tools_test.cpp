@@ -280,6 +280,7 @@ TEST_F(ToolsTest, AClickSelectsPointsAndTheirHandlesCanBeDragged) {
     pointer.drag(from, from + glm::dvec2(0, 5));
     EXPECT_EQ(handle(), from + glm::dvec2(0, 5));
     EXPECT_EQ(place(v), glm::dvec2(40, 45)) << "the vertex stays";
+    EXPECT_EQ(tools.overlay().handles.size(), 6u) << "the handles of the vertex stay in reach";
     pointer.modifiers.shift = true;
     pointer.click(place(v));
     EXPECT_EQ(session->selection().points().size(), 2u);
