@@ -22,10 +22,10 @@ constexpr int kWidth = 120, kHeight = 90;
 
 // 6 x 4 straight cells of two patches each; the left half of one colour, the right half of another, with a
 // feature between them.
-PatchMesh twoHalves() {
+PatchMesh twoParts(uint32_t columns) {
     PatchMesh mesh = testing::gridMesh(kWidth, kHeight, 6, 4);
     const HalfedgeMesh& c = mesh.connectivity();
-    const auto left = [&](PatchId p) { return p.index % 12 < 6; };
+    const auto left = [columns](PatchId p) { return p.index % 12 < 2 * columns; };
     mesh.forEachPatch([&](PatchId p) {
         const std::array colour = left(p) ? std::array{.8f, .3f, .2f} : std::array{.2f, .3f, .8f};
         mesh.setSpline(p, constantSpline(colour));
@@ -43,7 +43,7 @@ PatchMesh twoHalves() {
 struct ToolsTest : ::testing::Test {
     ToolsTest() {
         Document document;
-        document.mesh = twoHalves();
+        document.mesh = twoParts(3);
         session = std::make_unique<DocumentSession>(document, Photo{}, QString());
         tools.setSession(session.get());
     }
@@ -125,6 +125,24 @@ TEST_F(ToolsTest, ADoubleClickSelectsWhatFeaturesEnclose) {
     pointer.doubleClick({95, 70});
     EXPECT_EQ(selected().size(), 24u);
     EXPECT_TRUE(contains(selected(), patchAt({25, 25})));
+}
+
+TEST_F(ToolsTest, ADoubleClickThatFindsMostOfThePictureSaysSo) {
+    QString said;
+    QObject::connect(&tools, &ToolManager::said, [&](const QString& text) { said = text; });
+    pointer.doubleClick({25, 25});
+    EXPECT_EQ(said, QString()) << "one half";
+    Document document;
+    document.mesh = twoParts(4);
+    DocumentSession uneven(document, Photo{}, QString());
+    tools.setSession(&uneven);
+    pointer.doubleClick({115, 25});
+    EXPECT_EQ(uneven.selection().patches().size(), 16u);
+    EXPECT_EQ(said, QString()) << "the smaller part";
+    pointer.doubleClick({25, 25});
+    EXPECT_EQ(uneven.selection().patches().size(), 32u);
+    EXPECT_TRUE(said.contains("most of the picture")) << said.toStdString();
+    tools.setSession(nullptr);
 }
 
 TEST_F(ToolsTest, ALockedPatchIsPassedOverAndSaysSo) {
