@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <QSignalSpy>
+#include <QTest>
 
 #include "app/edit_actions.h"
 #include "app/selection_actions.h"
@@ -20,7 +21,7 @@ namespace {
 
 constexpr int kWidth = 120, kHeight = 90;
 
-// 6 x 4 straight cells of two patches each; the left half of one colour, the right half of another, with a
+// 6 x 4 straight cells of two patches each; the first columns of one colour, the others of another, with a
 // feature between them.
 PatchMesh twoParts(uint32_t columns) {
     PatchMesh mesh = testing::gridMesh(kWidth, kHeight, 6, 4);
@@ -309,6 +310,47 @@ TEST_F(ToolsTest, ArrowsNudgeInOneStep) {
     EXPECT_EQ(history().count(), 3);
     session->selection().clear();
     EXPECT_FALSE(tools.keyPress({ToolKeyCode::Left})) << "nothing to nudge: the canvas may scroll";
+}
+
+TEST_F(ToolsTest, NudgesInARowAreOneStep) {
+    tools.setTool(ToolId::Direct);
+    const VertexId v = vertex(2, 2), other = vertex(3, 2);
+    const glm::dvec2 from = place(v);
+    pointer.click(from);
+    for (int i = 0; i < 10; ++i) EXPECT_TRUE(pointer.key(ToolKeyCode::Right));
+    EXPECT_TRUE(pointer.key(ToolKeyCode::Left));
+    EXPECT_EQ(history().count(), 1);
+    const glm::dvec2 moved = place(v);
+    EXPECT_EQ(moved, from + glm::dvec2(9, 0));
+    history().undo();
+    EXPECT_EQ(place(v), from);
+    history().redo();
+    EXPECT_EQ(place(v), moved);
+    // Another direction, other points, another step between, and a state that is in the file.
+    pointer.key(ToolKeyCode::Down);
+    EXPECT_EQ(history().count(), 2);
+    pointer.click(place(other));
+    pointer.key(ToolKeyCode::Down);
+    EXPECT_EQ(history().count(), 3);
+    session->markSaved(session->revision(), "/folder/a.tessera", {});
+    pointer.key(ToolKeyCode::Down);
+    EXPECT_EQ(history().count(), 4);
+    EXPECT_EQ(history().savedIndex(), 3);
+    session->selection().setPatches({patchAt({25, 25})});
+    ASSERT_TRUE(
+        applyEdit(*session, "Paint", [](PatchMesh& mesh) { return testing::paint(mesh, PatchId(0), .5f); }));
+    session->selection().setShape({ControlPointRef::of(other)}, {});
+    pointer.key(ToolKeyCode::Down);
+    EXPECT_EQ(history().count(), 6);
+}
+
+TEST_F(ToolsTest, ANudgeAfterAPauseIsAnotherStep) {
+    tools.setTool(ToolId::Direct);
+    pointer.click(place(vertex(2, 2)));
+    pointer.key(ToolKeyCode::Right);
+    QTest::qWait(1100);
+    pointer.key(ToolKeyCode::Right);
+    EXPECT_EQ(history().count(), 2);
 }
 
 TEST_F(ToolsTest, AMarqueeSelectsVertices) {
