@@ -482,7 +482,8 @@ TEST_F(MainWindowTest, CancelLeavesTheDocumentUntouched) {
     EXPECT_EQ(session()->revision(), revision);
     EXPECT_FALSE(session()->modified());
     EXPECT_EQ(session()->history().count(), 0);
-    EXPECT_TRUE(window->messages().text().isEmpty()) << "what one asked for is no error";
+    EXPECT_FALSE(window->messages().showsError()) << "what one asked for is no error";
+    EXPECT_EQ(window->messages().text(), "Cancelled: Vectorizing disk.png.");
 }
 
 TEST_F(MainWindowTest, AMessageLeavesThePictureWhereItIs) {
