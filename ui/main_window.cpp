@@ -286,14 +286,24 @@ void MainWindow::welcome(DocumentSession& session) {
 }
 
 void MainWindow::showSession() {
-    const DocumentSession* session = mWorkspace.session();
     showBeginning();
-    const size_t features = session ? featureCount(session->document().mesh) : 0;
-    mStatus->showCounts(session, features);
-    mPanel->showSession(session, features);
+    showFigures();
     showView();
     updateActions();
     updateTitle();
+}
+
+void MainWindow::showFigures() {
+    const DocumentSession* session = mWorkspace.session();
+    const size_t features = session ? featureCount(session->document().mesh) : 0;
+    const auto draft = draftPatches();
+    mStatus->showCounts(session, features, draft);
+    mPanel->showSession(session, features, draft);
+}
+
+std::optional<size_t> MainWindow::draftPatches() const {
+    const auto& draft = mDrafts.mesh();
+    return draft ? std::optional(draft->patchCount()) : std::nullopt;
 }
 
 void MainWindow::showBeginning() {
@@ -417,7 +427,8 @@ void MainWindow::showDraft() {
     const auto& draft = mDrafts.mesh();
     mCanvas->setDraft(draft);
     if (!draft) mMessages->clear();
-    mPanel->showDraft(draft ? std::optional(draft->patchCount()) : std::nullopt);
+    mPanel->showDraft(draftPatches());
+    showFigures();
 }
 
 void MainWindow::leaveDraft() {

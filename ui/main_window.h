@@ -3,6 +3,7 @@
 
 #include <QMainWindow>
 #include <functional>
+#include <optional>
 
 #include "app/autosave.h"
 #include "app/draft_preview.h"
@@ -102,6 +103,8 @@ class MainWindow : public QMainWindow {
     void updateTitle();
     void showView();
     void startVectorize();
+    void showFigures();
+    std::optional<size_t> draftPatches() const;
     void showDraft();
     void leaveDraft();
     void explainDraft();

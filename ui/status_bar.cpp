@@ -192,9 +192,11 @@ void StatusBar::showCursor(std::optional<QPointF> image, QColor colour) {
             : QString());
 }
 
-void StatusBar::showCounts(const DocumentSession* session, size_t features) {
+void StatusBar::showCounts(const DocumentSession* session, size_t features, std::optional<size_t> draft) {
     QString text;
-    if (session && session->hasMesh()) {
+    if (draft) {
+        text = tr("Draft: %1 patches").arg(countText(*draft));
+    } else if (session && session->hasMesh()) {
         text = statesText(session->marks()) +
                tr("%1 patches  ·  %2 feature curves")
                    .arg(countText(session->document().mesh.patchCount()), countText(features));

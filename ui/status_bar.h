@@ -30,7 +30,8 @@ class StatusBar : public QStatusBar {
     void showZoom(std::optional<double> scale);
     // Image pixels and the colour shown there; none outside the picture.
     void showCursor(std::optional<QPointF> image, QColor colour);
-    void showCounts(const DocumentSession* session, size_t features);
+    // Of the draft of so many patches that is seen in place of the document, where there is one.
+    void showCounts(const DocumentSession* session, size_t features, std::optional<size_t> draft);
     void showSelection(size_t patches);
     // What the canvas is drawn with; `text` says more.
     void showRenderer(bool graphicsCard, const QString& text);
