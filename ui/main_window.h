@@ -159,7 +159,7 @@ class MainWindow : public QMainWindow {
     HistoryPanel* mHistory = nullptr;
     Navigator* mNavigator = nullptr;
     QList<QDockWidget*> mDocks;
-    QList<QDockWidget*> mHiddenDocks;  // by Hide Panels, to be shown again
+    QList<QDockWidget*> mHiddenDocks;  // by Hide Panels, in the order in which to show them again
     QMenu* mRecent = nullptr;
     bool mVectorizeWhenOpen = false;
     bool mMentionRecovery = false;

@@ -7,6 +7,8 @@
 #include <QScrollBar>
 #include <QStackedLayout>
 #include <QTabBar>
+#include <QTimer>
+#include <algorithm>
 
 #include "ui/action_table.h"
 #include "ui/canvas_widget.h"
@@ -137,8 +139,14 @@ void MainWindow::setPanelsHidden(bool hidden) {
         mHiddenDocks.clear();
         for (QDockWidget* dock : mDocks)
             if (!dock->isHidden()) mHiddenDocks.append(dock);
+        // Those in front at the end: of those behind one tab bar, the last one to be raised is in front.
+        std::stable_partition(mHiddenDocks.begin(), mHiddenDocks.end(),
+                              [](const QDockWidget* dock) { return dock->visibleRegion().isEmpty(); });
     }
-    for (QDockWidget* dock : mHiddenDocks) dock->setVisible(!hidden);
+    for (QDockWidget* dock : mHiddenDocks) {
+        dock->setVisible(!hidden);
+        if (!hidden) dock->raise();
+    }
     mToolBar->setVisible(!hidden);
     mToolOptions->setVisible(!hidden);
 }

@@ -84,6 +84,35 @@ TEST_F(Docks, TabHidesWhatIsOpenAndNoMore) {
     EXPECT_TRUE(dock("paletteDock")->isFloating());
 }
 
+TEST_F(Docks, PanelsComeBackWithTheSameOnesInFront) {
+    action(ActionId::ShowRecolourPanel)->setChecked(false);
+    action(ActionId::ShowRecolourPanel)->trigger();
+    action(ActionId::ShowHistoryPanel)->setChecked(false);
+    action(ActionId::ShowHistoryPanel)->trigger();
+    const auto inFront = [&] {
+        QStringList names;
+        for (QDockWidget* panel : window->findChildren<QDockWidget*>())
+            if (!panel->visibleRegion().isEmpty()) names.append(panel->objectName());
+        names.sort();
+        return names;
+    };
+    const QStringList wanted{"historyDock", "recolourDock"};
+    ASSERT_TRUE(QTest::qWaitFor([&] { return inFront() == wanted; }, 2000))
+        << inFront().join(' ').toStdString();
+    canvas().setFocus();
+    QTest::keyClick(&canvas(), Qt::Key_Tab);
+    QTest::qWait(50);
+    EXPECT_EQ(inFront(), QStringList());
+    QTest::keyClick(&canvas(), Qt::Key_Tab);
+    QTest::qWait(50);
+    EXPECT_EQ(inFront(), wanted) << inFront().join(' ').toStdString();
+    // The same once more, and over the end of the program.
+    QTest::keyClick(&canvas(), Qt::Key_Tab);
+    startAgain();
+    QTest::qWait(50);
+    EXPECT_EQ(inFront(), wanted) << inFront().join(' ').toStdString();
+}
+
 }  // namespace
 }  // namespace tessera
 
