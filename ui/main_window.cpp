@@ -134,6 +134,7 @@ void MainWindow::connectViewActions() {
         for (QWidget* widget : {static_cast<QWidget*>(mTopRuler), static_cast<QWidget*>(mLeftRuler), mCorner})
             widget->setVisible(shown);
     });
+    on(ActionId::ResetPanels, [this] { resetPanels(); });
     onToggled(ActionId::HidePanels, [this](bool hidden) { setPanelsHidden(hidden); });
     onToggled(ActionId::FullScreen, [this](bool full) {
         // Alone: a maximized window is maximized again afterwards.

@@ -77,8 +77,13 @@ class MainWindow : public QMainWindow {
     void buildLayout();
     QWidget* makeCentre();
     void makeDocks();
-    // A panel that `shown` opens and closes, and that has its name.
-    QDockWidget* addDock(const QString& name, QAction* shown, QWidget* content, bool scrolls);
+    // A panel, last in mDocks, that `shown` opens and closes, and that has its name.
+    void addDock(const QString& name, QAction* shown, QWidget* content, bool scrolls);
+    // All open, at the places that they have at first.
+    void arrangeDocks();
+    void resetPanels();
+    // Towards the canvas, where the panel floats beside it, as if it were still docked, and is not dragged.
+    void moveAside(QDockWidget* dock);
     void restoreWindow();
     void storeWindow();
     void setPanelsHidden(bool hidden);
