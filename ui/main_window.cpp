@@ -147,6 +147,21 @@ void MainWindow::connectViewActions() {
     hide->setShortcutContext(Qt::WidgetShortcut);
     mCanvas->addAction(hide);
     emit a[ActionId::Rulers]->toggled(false);
+    fillZoomMenu();
+}
+
+void MainWindow::fillZoomMenu() {
+    QMenu& menu = mStatus->zoomMenu();
+    menu.addAction((*mActions)[ActionId::ZoomFit]);
+    menu.addAction((*mActions)[ActionId::FitSelection]);
+    menu.addSeparator();
+    for (const double scale : {.25, .5, 1., 2., 4., 8.}) {
+        if (scale == 1)
+            menu.addAction((*mActions)[ActionId::Zoom100]);
+        else
+            connect(menu.addAction(zoomText(scale)), &QAction::triggered, this,
+                    [this, scale] { mCanvas->zoomTo(scale); });
+    }
 }
 
 void MainWindow::connectWorkspace() {
@@ -172,7 +187,6 @@ void MainWindow::connectWorkspace() {
     });
     connect(mOpening, &OpeningCard::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
-    connect(mStatus, &StatusBar::zoomClicked, this, [this] { mCanvas->zoomTo(1); });
     connect(mTabs, &QTabBar::currentChanged, this, [this](int tab) {
         if (tab >= 0) mWorkspace.setCurrent(mWorkspace.sessions().value(tab));
     });

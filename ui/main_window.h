@@ -91,6 +91,7 @@ class MainWindow : public QMainWindow {
     // main_window.cpp
     void connectActions();
     void connectViewActions();
+    void fillZoomMenu();
     void connectWorkspace();
     void connectCanvas();
     void connectPanels();

@@ -5,6 +5,7 @@
 #include <QHash>
 #include <QLabel>
 #include <QLocale>
+#include <QMenu>
 #include <QPainter>
 #include <QProgressBar>
 #include <QPushButton>
@@ -134,8 +135,9 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     mZoom->setProperty("role", "small");
     mZoom->setFocusPolicy(Qt::NoFocus);
     mZoom->setMinimumWidth(mZoom->fontMetrics().horizontalAdvance("100,000 %") + 24);
-    mZoom->setToolTip(tr("Zoom to 100 %"));
-    connect(mZoom, &QPushButton::clicked, this, &StatusBar::zoomClicked);
+    mZoom->setToolTip(tr("How large the picture is shown; click for other sizes"));
+    mZoom->setObjectName("zoom");
+    mZoom->setMenu(new QMenu(mZoom));
     // In one widget: QStatusBar makes itself a new layout, with its own distances, whenever it likes.
     auto* figures = new QWidget;
     auto* row = new QHBoxLayout(figures);
@@ -162,6 +164,10 @@ void StatusBar::showJob(const Job* job) {
     mProgress->setValue(int(job->fraction() * kProgressSteps));
     mCancel->setVisible(job->kind() != JobKind::Save);
     mCancel->setEnabled(!job->stopRequested());
+}
+
+QMenu& StatusBar::zoomMenu() {
+    return *mZoom->menu();
 }
 
 QString StatusBar::jobText() const {

@@ -12,6 +12,7 @@
 #include "app/jobs/job.h"
 
 class QLabel;
+class QMenu;
 class QProgressBar;
 class QPushButton;
 
@@ -37,10 +38,11 @@ class StatusBar : public QStatusBar {
     void showRenderer(bool graphicsCard, const QString& text);
 
     QString jobText() const;
+    // What a click on the zoom opens, to be filled.
+    QMenu& zoomMenu();
 
   signals:
     void cancelRequested();
-    void zoomClicked();
 
   private:
     QPointer<const Job> mShown;
