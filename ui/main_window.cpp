@@ -391,7 +391,7 @@ void MainWindow::updateActions() {
     a[ActionId::Undo]->setText(tr("&Undo %1").arg(history ? history->undoText() : QString()).trimmed());
     a[ActionId::Redo]->setText(tr("&Redo %1").arg(history ? history->redoText() : QString()).trimmed());
     for (int i = 0; i < int(ToolId::Count); ++i)
-        a[actionOf(ToolId(i))]->setEnabled(session && mTools.usable(ToolId(i)));
+        a[actionOf(ToolId(i))]->setEnabled(session);  // also while its patches are still being made
     updateSelectionActions();
 }
 
