@@ -117,9 +117,12 @@ QLayout* VectorizePanel::makeQualityRow() {
     mQuality->addItem(tr("Max"), "max");
     mQuality->insertSeparator(mQuality->count());
     mQuality->addItem(tr("Paper of 2009"), kPaper);
-    mQuality->setToolTip(
-        tr("A draft takes seconds, the best some minutes. The last is the method of the "
-           "paper that Tessera began with, to compare with"));
+    mQuality->setToolTip(tr(
+        "A draft takes seconds, the best some minutes. “Paper of 2009” is an older method, for comparison"));
+    mQuality->setItemData(
+        mQuality->findData(kPaper),
+        tr("How the research paper of 2009 that Tessera began with makes its patches, to compare with"),
+        Qt::ToolTipRole);
     mQuality->setCurrentIndex(mQuality->findData(mSettings.quality()));
     connect(mQuality, &QComboBox::activated, this,
             [this] { mSettings.setQuality(mQuality->currentData().toString()); });
