@@ -35,7 +35,10 @@ QString DocumentSession::displayName() const {
 
 QString DocumentSession::suggestedPath(const QString& suffix) const {
     const QFileInfo origin(mPath.isEmpty() ? mPhoto.path : mPath);
-    return origin.dir().filePath(origin.completeBaseName() + '.' + suffix);
+    const QString path = origin.dir().filePath(origin.completeBaseName() + '.' + suffix);
+    // Whoever takes what is proposed shall not replace the photo.
+    if (path.compare(mPhoto.path, Qt::CaseInsensitive) != 0) return path;
+    return origin.dir().filePath(tr("%1-vector").arg(origin.completeBaseName()) + '.' + suffix);
 }
 
 void DocumentSession::markSaved(uint64_t revision, const QString& path, std::optional<double> colourStep) {

@@ -39,7 +39,8 @@ class DocumentSession : public QObject {
     const QString& photoPath() const { return mPhoto.path; }
     // What the window calls it: the file's name, or the photo's.
     QString displayName() const;
-    // Where a dialog should start, and under which name: beside the photo or the document.
+    // Where a dialog should start, and under which name: beside the photo or the document, and never the
+    // photo's own.
     QString suggestedPath(const QString& suffix) const;
 
     uint64_t revision() const { return mRevision; }

@@ -19,6 +19,15 @@ void History::push(EditCommand command) {
     emit changed();
 }
 
+void History::joinLast() {
+    TESSERA_CHECK(!mSession.editing());
+    if (mIndex < 2 || canRedo() || revision(mIndex - 1) == mSession.savedRevision()) return;
+    mSteps[size_t(mIndex - 2)].join(mSteps.back());
+    mSteps.pop_back();
+    --mIndex;
+    emit changed();
+}
+
 void History::undo() {
     mSession.whenIdle([this] { moveTo(mIndex - 1); });
 }

@@ -21,6 +21,10 @@ class History : public QObject {
     // Drops the steps that have been undone and does this one. No EditSession is open.
     void push(EditCommand command);
 
+    // Makes one step of the last two, both edits of the mesh. Nothing happens where one of them is undone or
+    // forgotten, or where the state between them is the one in the file. No EditSession is open.
+    void joinLast();
+
     int count() const { return int(mSteps.size()); }
     int index() const { return mIndex; }  // the state that the document is in, 0..count()
     // Of the step from state `step` to the next.

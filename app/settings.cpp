@@ -19,6 +19,11 @@ constexpr double kDefaultDetail = .6;
 constexpr double kDefaultMeanError = 3;
 constexpr int kDefaultAutosaveSeconds = 120;
 
+bool inCache(const QString& path) {
+    const QString cache = QStandardPaths::writableLocation(QStandardPaths::CacheLocation);
+    return (QDir::cleanPath(path) + '/').startsWith(QDir::cleanPath(cache) + '/');
+}
+
 template <class Value>
 struct Named {
     Value value;
@@ -79,13 +84,20 @@ void Settings::clearRecentFiles() {
 
 QString Settings::folder() const {
     const QString folder = mSettings.value("files/folder").toString();
-    if (!folder.isEmpty() && QFileInfo(folder).isDir()) return folder;
-    const QString pictures = QStandardPaths::writableLocation(QStandardPaths::PicturesLocation);
-    return QFileInfo(pictures).isDir() ? pictures : QDir::homePath();
+    if (!folder.isEmpty() && QFileInfo(folder).isDir() && !inCache(folder)) return folder;
+    for (const auto place : {QStandardPaths::PicturesLocation, QStandardPaths::DocumentsLocation}) {
+        const QString usual = QStandardPaths::writableLocation(place);
+        if (QFileInfo(usual).isDir()) return usual;
+    }
+    return QDir::homePath();
 }
 
 void Settings::setFolder(const QString& folder) {
-    mSettings.setValue("files/folder", folder);
+    if (!inCache(folder)) mSettings.setValue("files/folder", folder);
+}
+
+QString Settings::outsideCache(const QString& path) const {
+    return inCache(path) ? QDir(folder()).filePath(QFileInfo(path).fileName()) : path;
 }
 
 Theme Settings::theme() const {

@@ -26,7 +26,10 @@ class Settings {
     void clearRecentFiles();
 
     QString folder() const;  // where the last dialog ended; the pictures folder at first
+    // Not where it is in the program's cache, which nobody looks into.
     void setFolder(const QString& folder);
+    // The path, or that name in folder() where the path is in the program's cache.
+    QString outsideCache(const QString& path) const;
 
     Theme theme() const;
     void setTheme(Theme theme);

@@ -114,7 +114,7 @@ class Workspace : public QObject {
     Job* currentJob() const { return mJobs.isEmpty() ? nullptr : mJobs.last().job; }
     // The last job of this kind of the current document, or null; of kind Open: of all documents to come.
     const Job* running(JobKind kind) const { return find(kind, mCurrent); }
-    // Asks the current job to stop, unless it is a save, which is short and wanted.
+    // Asks the current job to stop, unless it is a save, which is short and wanted; it is said once it has.
     void cancel();
 
   signals:

@@ -1,6 +1,7 @@
 // The half of the workspace that works on the open documents: vectorizing, saving, exporting, and the list of
 // jobs.
 #include <QFileInfo>
+#include <QLocale>
 #include <algorithm>
 #include <utility>
 
@@ -17,6 +18,10 @@ namespace {
 
 // So many elements take less than a tenth of a second.
 constexpr size_t kEditedAtOnce = 50;
+
+QString wholeText(int number) {
+    return QLocale().toString(number);
+}
 
 }  // namespace
 
@@ -158,8 +163,9 @@ void Workspace::exportPicture(const ExportRequest& request) {
         Job* job = startExportJob(
             this, target->document().mesh, request, [this, path = request.path](Result<Exported> exported) {
                 if (!exported) return report(exported.error());
-                emit said({.kind = Message::Kind::Info,
-                           .text = tr("Exported “%1”.").arg(QFileInfo(path).fileName())});
+                emit said({.text = tr("Exported “%1”, %2 × %3.")
+                                       .arg(QFileInfo(path).fileName(), wholeText(exported->size.width()),
+                                            wholeText(exported->size.height()))});
             });
         track(job, target);
     });
@@ -220,7 +226,12 @@ Job* Workspace::find(JobKind kind, const DocumentSession* session) const {
 }
 
 void Workspace::cancel() {
-    if (Job* job = currentJob(); job && job->kind() != JobKind::Save) job->stop();
+    Job* const job = currentJob();
+    if (job && job->kind() != JobKind::Save && !job->stopRequested()) {
+        job->stop();
+        connect(job, &Job::finished, this,
+                [this, job] { emit said({.text = tr("Cancelled: %1.").arg(job->title())}); });
+    }
     emit jobChanged();
 }
 

@@ -98,6 +98,7 @@ enum class ActionId {
     ShowSelectionPanel,
     ShowHistoryPanel,
     ShowNavigatorPanel,
+    ResetPanels,
     CheatSheet,
     About,
     Count

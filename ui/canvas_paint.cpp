@@ -73,6 +73,16 @@ void CanvasWidget::paintEvent(QPaintEvent*) {
     if (mLook.view.scale() >= kGridFromScale * ratio) paintPixelGrid(painter);
     painter.setClipping(false);
     paintOverlays(painter);
+    if (mDrafting && !showsPhoto()) paintDraftTag(painter);
+}
+
+void CanvasWidget::paintDraftTag(QPainter& painter) const {
+    const double ratio = devicePixelRatioF(), gap = 8 * ratio;
+    const QRectF shown = mLook.view.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect();
+    painter.save();
+    painter.setRenderHint(QPainter::Antialiasing);
+    drawTag(painter, shown.topLeft() + QPointF(gap, gap), tr("Draft"), false, ratio);
+    painter.restore();
 }
 
 void CanvasWidget::paintPictureManaged(QPainter& painter) const {

@@ -182,6 +182,7 @@ class CanvasWidget : public QWidget {
     void paintLens(QPainter& painter) const;
     void paintPixelGrid(QPainter& painter) const;
     void paintOverlays(QPainter& painter) const;
+    void paintDraftTag(QPainter& painter) const;
     void paintVector(QPainter& painter) const;
     void paintFrame(QPainter& painter, const Frame& frame) const;
 

@@ -134,6 +134,7 @@ void MainWindow::connectViewActions() {
         for (QWidget* widget : {static_cast<QWidget*>(mTopRuler), static_cast<QWidget*>(mLeftRuler), mCorner})
             widget->setVisible(shown);
     });
+    on(ActionId::ResetPanels, [this] { resetPanels(); });
     onToggled(ActionId::HidePanels, [this](bool hidden) { setPanelsHidden(hidden); });
     onToggled(ActionId::FullScreen, [this](bool full) {
         // Alone: a maximized window is maximized again afterwards.
@@ -146,6 +147,21 @@ void MainWindow::connectViewActions() {
     hide->setShortcutContext(Qt::WidgetShortcut);
     mCanvas->addAction(hide);
     emit a[ActionId::Rulers]->toggled(false);
+    fillZoomMenu();
+}
+
+void MainWindow::fillZoomMenu() {
+    QMenu& menu = mStatus->zoomMenu();
+    menu.addAction((*mActions)[ActionId::ZoomFit]);
+    menu.addAction((*mActions)[ActionId::FitSelection]);
+    menu.addSeparator();
+    for (const double scale : {.25, .5, 1., 2., 4., 8.}) {
+        if (scale == 1)
+            menu.addAction((*mActions)[ActionId::Zoom100]);
+        else
+            connect(menu.addAction(zoomText(scale)), &QAction::triggered, this,
+                    [this, scale] { mCanvas->zoomTo(scale); });
+    }
 }
 
 void MainWindow::connectWorkspace() {
@@ -171,7 +187,6 @@ void MainWindow::connectWorkspace() {
     });
     connect(mOpening, &OpeningCard::cancelRequested, &mWorkspace, &Workspace::cancel);
     connect(mStatus, &StatusBar::cancelRequested, &mWorkspace, &Workspace::cancel);
-    connect(mStatus, &StatusBar::zoomClicked, this, [this] { mCanvas->zoomTo(1); });
     connect(mTabs, &QTabBar::currentChanged, this, [this](int tab) {
         if (tab >= 0) mWorkspace.setCurrent(mWorkspace.sessions().value(tab));
     });
@@ -286,14 +301,24 @@ void MainWindow::welcome(DocumentSession& session) {
 }
 
 void MainWindow::showSession() {
-    const DocumentSession* session = mWorkspace.session();
     showBeginning();
-    const size_t features = session ? featureCount(session->document().mesh) : 0;
-    mStatus->showCounts(session, features);
-    mPanel->showSession(session, features);
+    showFigures();
     showView();
     updateActions();
     updateTitle();
+}
+
+void MainWindow::showFigures() {
+    const DocumentSession* session = mWorkspace.session();
+    const size_t features = session ? featureCount(session->document().mesh) : 0;
+    const auto draft = draftPatches();
+    mStatus->showCounts(session, features, draft);
+    mPanel->showSession(session, features, draft);
+}
+
+std::optional<size_t> MainWindow::draftPatches() const {
+    const auto& draft = mDrafts.mesh();
+    return draft ? std::optional(draft->patchCount()) : std::nullopt;
 }
 
 void MainWindow::showBeginning() {
@@ -366,7 +391,7 @@ void MainWindow::updateActions() {
     a[ActionId::Undo]->setText(tr("&Undo %1").arg(history ? history->undoText() : QString()).trimmed());
     a[ActionId::Redo]->setText(tr("&Redo %1").arg(history ? history->redoText() : QString()).trimmed());
     for (int i = 0; i < int(ToolId::Count); ++i)
-        a[actionOf(ToolId(i))]->setEnabled(session && mTools.usable(ToolId(i)));
+        a[actionOf(ToolId(i))]->setEnabled(session);  // also while its patches are still being made
     updateSelectionActions();
 }
 
@@ -417,7 +442,8 @@ void MainWindow::showDraft() {
     const auto& draft = mDrafts.mesh();
     mCanvas->setDraft(draft);
     if (!draft) mMessages->clear();
-    mPanel->showDraft(draft ? std::optional(draft->patchCount()) : std::nullopt);
+    mPanel->showDraft(draftPatches());
+    showFigures();
 }
 
 void MainWindow::leaveDraft() {

@@ -3,6 +3,7 @@
 
 #include <QMainWindow>
 #include <functional>
+#include <optional>
 
 #include "app/autosave.h"
 #include "app/draft_preview.h"
@@ -76,8 +77,13 @@ class MainWindow : public QMainWindow {
     void buildLayout();
     QWidget* makeCentre();
     void makeDocks();
-    // A panel that `shown` opens and closes, and that has its name.
-    QDockWidget* addDock(const QString& name, QAction* shown, QWidget* content, bool scrolls);
+    // A panel, last in mDocks, that `shown` opens and closes, and that has its name.
+    void addDock(const QString& name, QAction* shown, QWidget* content, bool scrolls);
+    // All open, at the places that they have at first.
+    void arrangeDocks();
+    void resetPanels();
+    // Towards the canvas, where the panel floats beside it, as if it were still docked, and is not dragged.
+    void moveAside(QDockWidget* dock);
     void restoreWindow();
     void storeWindow();
     void setPanelsHidden(bool hidden);
@@ -85,6 +91,7 @@ class MainWindow : public QMainWindow {
     // main_window.cpp
     void connectActions();
     void connectViewActions();
+    void fillZoomMenu();
     void connectWorkspace();
     void connectCanvas();
     void connectPanels();
@@ -102,6 +109,8 @@ class MainWindow : public QMainWindow {
     void updateTitle();
     void showView();
     void startVectorize();
+    void showFigures();
+    std::optional<size_t> draftPatches() const;
     void showDraft();
     void leaveDraft();
     void explainDraft();
@@ -156,7 +165,7 @@ class MainWindow : public QMainWindow {
     HistoryPanel* mHistory = nullptr;
     Navigator* mNavigator = nullptr;
     QList<QDockWidget*> mDocks;
-    QList<QDockWidget*> mHiddenDocks;  // by Hide Panels, to be shown again
+    QList<QDockWidget*> mHiddenDocks;  // by Hide Panels, in the order in which to show them again
     QMenu* mRecent = nullptr;
     bool mVectorizeWhenOpen = false;
     bool mMentionRecovery = false;

@@ -55,7 +55,7 @@ void MainWindow::chooseAndSave() {
 }
 
 QString MainWindow::askForPath(const DocumentSession& session) {
-    return askForSavePath(this, tr("Save As"), session.suggestedPath("tessera"),
+    return askForSavePath(this, tr("Save As"), mSettings.outsideCache(session.suggestedPath("tessera")),
                           tr("Tessera documents (*.tessera)"));
 }
 
@@ -67,8 +67,11 @@ void MainWindow::chooseAndExport() {
     if (dialog.exec() != QDialog::Accepted) return;
     ExportRequest request = dialog.request();
     request.path =
-        askForSavePath(this, tr("Export Picture"), session->suggestedPath(dialog.suffix()), dialog.filter());
-    if (!request.path.isEmpty()) mWorkspace.exportPicture(request);
+        askForSavePath(this, tr("Export Picture"),
+                       mSettings.outsideCache(session->suggestedPath(dialog.suffix())), dialog.filter());
+    if (request.path.isEmpty()) return;
+    mSettings.setFolder(QFileInfo(request.path).absolutePath());
+    mWorkspace.exportPicture(request);
 }
 
 void MainWindow::chooseAndRelink() {

@@ -1,12 +1,15 @@
 // The part of the main window that puts it together and remembers where things were.
 #include <QDockWidget>
 #include <QGridLayout>
+#include <QGuiApplication>
 #include <QMenuBar>
 #include <QScreen>
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QStackedLayout>
 #include <QTabBar>
+#include <QTimer>
+#include <algorithm>
 
 #include "ui/action_table.h"
 #include "ui/canvas_widget.h"
@@ -31,6 +34,8 @@ namespace {
 constexpr QSize kFirstSize(1440, 900);
 // What the panels need at least.
 constexpr int kPanelWidthPx = 290;
+constexpr int kFloatedAsidePx = 40;
+constexpr int kFloatedMs = 150;  // a double click on the title is over by then
 // Of what saveState() keeps: another number where docks have come or gone.
 constexpr int kStateVersion = 3;
 
@@ -88,25 +93,51 @@ void MainWindow::makeDocks() {
     mHistory = new HistoryPanel;
     mNavigator = new Navigator;
     const auto add = [this](const QString& name, ActionId shown, QWidget* content, bool scrolls) {
-        return addDock(name, (*mActions)[shown], content, scrolls);
+        addDock(name, (*mActions)[shown], content, scrolls);
     };
-    QDockWidget* vectorize = add("vectorizeDock", ActionId::ShowVectorizePanel, mPanel, true);
-    QDockWidget* recolour = add("recolourDock", ActionId::ShowRecolourPanel, mRecolour, true);
-    QDockWidget* palette = add("paletteDock", ActionId::ShowPalettePanel, mPalette, true);
-    QDockWidget* selection = add("selectionDock", ActionId::ShowSelectionPanel, mSelection, true);
-    QDockWidget* history = add("historyDock", ActionId::ShowHistoryPanel, mHistory, false);
-    QDockWidget* navigator = add("navigatorDock", ActionId::ShowNavigatorPanel, mNavigator, false);
-    tabifyDockWidget(vectorize, recolour);
-    tabifyDockWidget(recolour, palette);
-    tabifyDockWidget(selection, history);
-    tabifyDockWidget(history, navigator);
+    add("vectorizeDock", ActionId::ShowVectorizePanel, mPanel, true);
+    add("recolourDock", ActionId::ShowRecolourPanel, mRecolour, true);
+    add("paletteDock", ActionId::ShowPalettePanel, mPalette, true);
+    add("selectionDock", ActionId::ShowSelectionPanel, mSelection, true);
+    add("historyDock", ActionId::ShowHistoryPanel, mHistory, false);
+    add("navigatorDock", ActionId::ShowNavigatorPanel, mNavigator, false);
+    arrangeDocks();
+}
+
+void MainWindow::arrangeDocks() {
+    for (QDockWidget* dock : mDocks) {
+        dock->setFloating(false);
+        removeDockWidget(dock);
+        addDockWidget(Qt::RightDockWidgetArea, dock);
+        dock->show();
+    }
+    // Two groups of three, one above the other.
+    for (const int first : {0, 3})
+        for (const int next : {first + 1, first + 2}) tabifyDockWidget(mDocks[next - 1], mDocks[next]);
+    QDockWidget *const vectorize = mDocks.first(), *const navigator = mDocks.last();
     vectorize->raise();
     navigator->raise();
     resizeDocks({vectorize, navigator}, {3, 1}, Qt::Vertical);
 }
 
-QDockWidget* MainWindow::addDock(const QString& name, QAction* shown, QWidget* content, bool scrolls) {
-    auto* dock = new QDockWidget(shown->text().remove('&'));
+void MainWindow::resetPanels() {
+    (*mActions)[ActionId::HidePanels]->setChecked(false);
+    arrangeDocks();
+}
+
+void MainWindow::moveAside(QDockWidget* dock) {
+    // While the button is down the panel is being dragged; other presses are over by the time.
+    const QPoint place = dock->pos();
+    QTimer::singleShot(kFloatedMs, dock, [this, dock, place] {
+        if (!dock->isFloating() || dock->pos() != place || QGuiApplication::mouseButtons()) return;
+        const QRect canvas(mCanvas->mapToGlobal(QPoint(0, 0)), mCanvas->size()), panel = dock->geometry();
+        if (panel.intersects(canvas) || !panel.intersects(geometry())) return;
+        dock->move(place + QPoint(place.x() > canvas.x() ? -kFloatedAsidePx : kFloatedAsidePx, 0));
+    });
+}
+
+void MainWindow::addDock(const QString& name, QAction* shown, QWidget* content, bool scrolls) {
+    auto* dock = new QDockWidget(shown->text().remove('&'), this);
     dock->setObjectName(name);
     dock->setAllowedAreas(Qt::LeftDockWidgetArea | Qt::RightDockWidgetArea);
     // Whether it is open, be it behind another one's tab or not.
@@ -127,9 +158,11 @@ QDockWidget* MainWindow::addDock(const QString& name, QAction* shown, QWidget* c
     } else {
         dock->setWidget(content);
     }
-    addDockWidget(Qt::RightDockWidgetArea, dock);
+    // Not at the start, where it is to be where it was left.
+    connect(dock, &QDockWidget::topLevelChanged, this, [this, dock](bool floats) {
+        if (floats && isVisible()) moveAside(dock);
+    });
     mDocks.append(dock);
-    return dock;
 }
 
 void MainWindow::setPanelsHidden(bool hidden) {
@@ -137,8 +170,14 @@ void MainWindow::setPanelsHidden(bool hidden) {
         mHiddenDocks.clear();
         for (QDockWidget* dock : mDocks)
             if (!dock->isHidden()) mHiddenDocks.append(dock);
+        // Those in front at the end: of those behind one tab bar, the last one to be raised is in front.
+        std::stable_partition(mHiddenDocks.begin(), mHiddenDocks.end(),
+                              [](const QDockWidget* dock) { return dock->visibleRegion().isEmpty(); });
     }
-    for (QDockWidget* dock : mHiddenDocks) dock->setVisible(!hidden);
+    for (QDockWidget* dock : mHiddenDocks) {
+        dock->setVisible(!hidden);
+        if (!hidden) dock->raise();
+    }
     mToolBar->setVisible(!hidden);
     mToolOptions->setVisible(!hidden);
 }

@@ -5,6 +5,7 @@
 #include <QHash>
 #include <QLabel>
 #include <QLocale>
+#include <QMenu>
 #include <QPainter>
 #include <QProgressBar>
 #include <QPushButton>
@@ -134,8 +135,9 @@ StatusBar::StatusBar(QWidget* parent) : QStatusBar(parent) {
     mZoom->setProperty("role", "small");
     mZoom->setFocusPolicy(Qt::NoFocus);
     mZoom->setMinimumWidth(mZoom->fontMetrics().horizontalAdvance("100,000 %") + 24);
-    mZoom->setToolTip(tr("Zoom to 100 %"));
-    connect(mZoom, &QPushButton::clicked, this, &StatusBar::zoomClicked);
+    mZoom->setToolTip(tr("How large the picture is shown; click for other sizes"));
+    mZoom->setObjectName("zoom");
+    mZoom->setMenu(new QMenu(mZoom));
     // In one widget: QStatusBar makes itself a new layout, with its own distances, whenever it likes.
     auto* figures = new QWidget;
     auto* row = new QHBoxLayout(figures);
@@ -162,6 +164,10 @@ void StatusBar::showJob(const Job* job) {
     mProgress->setValue(int(job->fraction() * kProgressSteps));
     mCancel->setVisible(job->kind() != JobKind::Save);
     mCancel->setEnabled(!job->stopRequested());
+}
+
+QMenu& StatusBar::zoomMenu() {
+    return *mZoom->menu();
 }
 
 QString StatusBar::jobText() const {
@@ -192,9 +198,11 @@ void StatusBar::showCursor(std::optional<QPointF> image, QColor colour) {
             : QString());
 }
 
-void StatusBar::showCounts(const DocumentSession* session, size_t features) {
+void StatusBar::showCounts(const DocumentSession* session, size_t features, std::optional<size_t> draft) {
     QString text;
-    if (session && session->hasMesh()) {
+    if (draft) {
+        text = tr("Draft: %1 patches").arg(countText(*draft));
+    } else if (session && session->hasMesh()) {
         text = statesText(session->marks()) +
                tr("%1 patches  ·  %2 feature curves")
                    .arg(countText(session->document().mesh.patchCount()), countText(features));

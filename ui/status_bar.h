@@ -12,6 +12,7 @@
 #include "app/jobs/job.h"
 
 class QLabel;
+class QMenu;
 class QProgressBar;
 class QPushButton;
 
@@ -30,16 +31,18 @@ class StatusBar : public QStatusBar {
     void showZoom(std::optional<double> scale);
     // Image pixels and the colour shown there; none outside the picture.
     void showCursor(std::optional<QPointF> image, QColor colour);
-    void showCounts(const DocumentSession* session, size_t features);
+    // Of the draft of so many patches that is seen in place of the document, where there is one.
+    void showCounts(const DocumentSession* session, size_t features, std::optional<size_t> draft);
     void showSelection(size_t patches);
     // What the canvas is drawn with; `text` says more.
     void showRenderer(bool graphicsCard, const QString& text);
 
     QString jobText() const;
+    // What a click on the zoom opens, to be filled.
+    QMenu& zoomMenu();
 
   signals:
     void cancelRequested();
-    void zoomClicked();
 
   private:
     QPointer<const Job> mShown;

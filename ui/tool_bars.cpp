@@ -118,9 +118,10 @@ void ToolOptionsBar::makeColourPages() {
 }
 
 void ToolOptionsBar::makeShapePages() {
-    const Page direct = addPage(ToolId::Direct, tr("Direct Select"),
-                                tr("Shift keeps to 45°, Alt breaks smooth joins, %1 and %2 nudge by a pixel"),
-                                {ActionId::NudgeLeft, ActionId::NudgeRight});
+    const Page direct =
+        addPage(ToolId::Direct, tr("Direct Select"),
+                tr("Shift keeps to 45°, Alt breaks smooth joins, %1, %2, %3 and %4 nudge by a pixel"),
+                {ActionId::NudgeLeft, ActionId::NudgeRight, ActionId::NudgeUp, ActionId::NudgeDown});
     addSwitch(direct, tr("All handles"), tr("Show and take hold of handles that are not selected"),
               [](ToolOptions& o) -> bool& { return o.allHandles; });
     addSwitch(direct, tr("Refit colours"), tr("Fit the colours to the photo again after a change of shape"),

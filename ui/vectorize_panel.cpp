@@ -117,9 +117,12 @@ QLayout* VectorizePanel::makeQualityRow() {
     mQuality->addItem(tr("Max"), "max");
     mQuality->insertSeparator(mQuality->count());
     mQuality->addItem(tr("Paper of 2009"), kPaper);
-    mQuality->setToolTip(
-        tr("A draft takes seconds, the best some minutes. The last is the method of the "
-           "paper that Tessera began with, to compare with"));
+    mQuality->setToolTip(tr(
+        "A draft takes seconds, the best some minutes. “Paper of 2009” is an older method, for comparison"));
+    mQuality->setItemData(
+        mQuality->findData(kPaper),
+        tr("How the research paper of 2009 that Tessera began with makes its patches, to compare with"),
+        Qt::ToolTipRole);
     mQuality->setCurrentIndex(mQuality->findData(mSettings.quality()));
     connect(mQuality, &QComboBox::activated, this,
             [this] { mSettings.setQuality(mQuality->currentData().toString()); });
@@ -296,12 +299,17 @@ void VectorizePanel::showSettings(const VectorizeSettings& settings) {
     mFeatures->setValue(int(std::lround(100 * featureShare(settings))));
 }
 
-void VectorizePanel::showSession(const DocumentSession* session, size_t features) {
+void VectorizePanel::showSession(const DocumentSession* session, size_t features,
+                                 std::optional<size_t> draft) {
     const bool hasMesh = session && session->hasMesh();
     mAmount->setPicture(session ? QSize(session->width(), session->height()) : QSize());
-    mResult->setVisible(hasMesh);
+    mResult->setVisible(hasMesh || (session && draft));
     mPhotoMissing->setVisible(hasMesh && !session->photo().image);
-    if (!hasMesh) return;
+    if (!mResult->isHidden()) showFigures(*session, features, draft);
+}
+
+void VectorizePanel::showFigures(const DocumentSession& session, size_t features,
+                                 std::optional<size_t> draft) {
     while (mFigures->rowCount() > 0) mFigures->removeRow(0);
     const auto add = [&](const QString& name, const QString& value) {
         auto* label = new QLabel(value);
@@ -309,9 +317,12 @@ void VectorizePanel::showSession(const DocumentSession* session, size_t features
         label->setTextInteractionFlags(Qt::TextSelectableByMouse);
         mFigures->addRow(name, label);
     };
-    const Document& document = session->document();
+    const Document& document = session.document();
     const QLocale locale;
-    add(tr("Picture"), tr("%1 × %2").arg(session->width()).arg(session->height()));
+    add(tr("Picture"), tr("%1 × %2").arg(session.width()).arg(session.height()));
+    mShortfall->setVisible(!draft && !document.report.shortfall.empty());
+    // What is known of the document is not so of its draft.
+    if (draft) return add(tr("Draft"), tr("%1 patches").arg(countText(*draft)));
     add(tr("Patches"), countText(document.mesh.patchCount()));
     add(tr("Feature curves"), countText(features));
     if (document.difference) {
@@ -323,7 +334,6 @@ void VectorizePanel::showSession(const DocumentSession* session, size_t features
     if (!document.report.stages.empty())
         add(tr("Time"), tr("%1 s").arg(locale.toString(secondsOf(document.report), 'f', 1)));
     mShortfall->setText(asSentence(document.report.shortfall));
-    mShortfall->setVisible(!document.report.shortfall.empty());
 }
 
 }  // namespace tessera

@@ -37,8 +37,9 @@ class VectorizePanel : public QWidget {
     void showDraft(std::optional<size_t> patches);
     // Makes the fields say what a document was made with.
     void showSettings(const VectorizeSettings& settings);
-    // Shows what the document holds; null where none is open.
-    void showSession(const DocumentSession* session, size_t features);
+    // Shows what the document holds, or the draft on the canvas that is seen in its place; null where none is
+    // open.
+    void showSession(const DocumentSession* session, size_t features, std::optional<size_t> draft = {});
 
   signals:
     // The draft of settings() would be good to see; it is not wanted any more.
@@ -57,6 +58,7 @@ class VectorizePanel : public QWidget {
     bool paperChosen() const;
     void showFieldsOfMethod();
     QWidget* makeResultPart();
+    void showFigures(const DocumentSession& session, size_t features, std::optional<size_t> draft);
     QWidget* makeShowPart(const ActionTable& actions);
 
     Settings& mSettings;

@@ -49,6 +49,13 @@ EditCommand::EditCommand(DocumentSession& session, QString text, Document after,
     mChange.saved = true;
 }
 
+void EditCommand::join(const EditCommand& next) {
+    mChange.touched = united(mChange.touched, next.mChange.touched);
+    mChange.selections = mChange.selections || next.mChange.selections;
+    mBytesBefore = bytesBeyond(mOther, mSession.document());
+    mBytesAfter = bytesBeyond(mSession.document(), mOther);
+}
+
 void EditCommand::swap() {
     mDone = !mDone;
     mSession.swapState(mOther, mOtherRevision, mOtherPhoto, mChange);

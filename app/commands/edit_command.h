@@ -31,6 +31,8 @@ class EditCommand {
     // What the held state costs beyond the current one, in bytes.
     size_t bytes() const { return mDone ? mBytesBefore : mBytesAfter; }
     void swap();
+    // This step and the one right after it as one; both are done and are edits of the mesh.
+    void join(const EditCommand& next);
 
   private:
     DocumentSession& mSession;

@@ -28,7 +28,7 @@ Result<Exported> run(const PatchMesh& mesh, const ExportRequest& request, Progre
     progress.beginStage("writing", .2);
     if (auto written = writeImage(*image, request.path.toStdString(), request.options, &progress); !written)
         return tl::unexpected<Error>(written.error());
-    return Exported{};
+    return Exported{size};
 }
 
 }  // namespace

@@ -24,8 +24,9 @@ QSize exportSize(QSize picture, const ExportRequest& request);
 // The largest picture that is exported, so that the memory for it (16 bytes a pixel and more) can be had.
 constexpr double kMaxExportPixels = 200e6;
 
-// What is written: nothing, but the Result<void> would have no value to take out of a future.
-struct Exported {};
+struct Exported {
+    QSize size;  // of the picture that is in the file now
+};
 
 // Fails with Usage where the picture would be too large.
 Job* startExportJob(QObject* owner, PatchMesh mesh, ExportRequest request,

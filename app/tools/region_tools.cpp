@@ -9,7 +9,8 @@ namespace tessera {
 
 namespace {
 
-constexpr double kNearlyAll = .75;
+// Of all patches: a shape that somebody means is rarely that large, a leak through a gap mostly is.
+constexpr double kTooMany = .5;
 
 }  // namespace
 
@@ -75,10 +76,10 @@ void SelectTool::doubleClick(const ToolEvent& event) {
     pressed(event);
     const PatchSet found = enclosedByFeatures(mesh(), hit->patch, options().gapPx);
     select(found, event.modifiers);
-    if (double(found.size()) > kNearlyAll * double(mesh().patchCount()))
+    if (double(found.size()) > kTooMany * double(mesh().patchCount()))
         host().say(QObject::tr(
-            "The features around this place are far apart, so nearly everything is selected. Close "
-            "wider gaps in the tool's options, or take the wand, which keeps to colours."));
+            "The features around this place have gaps, so most of the picture is selected. Close wider gaps "
+            "in the tool's options, or take the wand, which keeps to colours."));
 }
 
 ToolOverlay SelectTool::overlay() const {

@@ -9,6 +9,13 @@
 
 namespace tessera {
 
+namespace {
+
+// Whoever waits longer means another step.
+constexpr qint64 kNudgesApartMs = 1000;
+
+}  // namespace
+
 ToolManager::ToolManager(QObject* parent) : QObject(parent) {
     ToolHost& host = *this;
     const auto add = [&](ToolId id, std::unique_ptr<Tool> tool) { mTools[size_t(id)] = std::move(tool); };
@@ -32,6 +39,7 @@ void ToolManager::setSession(DocumentSession* session) {
     cancel();
     if (mSession) mSession->disconnect(this);
     mSession = session;
+    mNudge = {};
     leave();
     if (!mSession) return;
     connect(mSession, &DocumentSession::changed, this, [this](const Change& change) {
@@ -104,9 +112,24 @@ bool ToolManager::keyPress(const ToolKey& key) {
 
 bool ToolManager::keyRelease(const ToolKey& key) {
     if (!usable(mCurrent)) return false;
+    const uint64_t before = mSession->revision();
     const bool used = current().keyRelease(key);
+    if (used && mSession->revision() != before) joinNudge(before, key.code);
     emit overlayChanged();
     return used;
+}
+
+void ToolManager::joinNudge(uint64_t before, ToolKeyCode code) {
+    const Selection& selection = mSession->selection();
+    Nudge nudge{.revision = mSession->revision(),
+                .horizontal = code == ToolKeyCode::Left || code == ToolKeyCode::Right,
+                .points = selection.points(),
+                .curves = selection.curves()};
+    nudge.since.start();
+    const bool alike = mNudge.revision == before && mNudge.horizontal == nudge.horizontal &&
+                       mNudge.points == nudge.points && mNudge.curves == nudge.curves;
+    if (alike && !mNudge.since.hasExpired(kNudgesApartMs)) mSession->history().joinLast();
+    mNudge = std::move(nudge);
 }
 
 void ToolManager::cancel() {

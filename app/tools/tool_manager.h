@@ -1,10 +1,12 @@
 // The tools of one window: which is in use, what they share, and the events on their way to it.
 #pragma once
 
+#include <QElapsedTimer>
 #include <QObject>
 #include <QPointer>
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "app/tools/tool.h"
 
@@ -60,6 +62,18 @@ class ToolManager : public QObject, private ToolHost {
     void changeView(const ViewRequest& request) override { emit viewRequested(request); }
     void say(const QString& text) override { emit said(text); }
 
+    // The step that a nudge key has just made.
+    struct Nudge {
+        uint64_t revision = 0;  // that it led to; 0 for none
+        bool horizontal = false;
+        std::vector<ControlPointRef> points = {};
+        std::vector<EdgeId> curves = {};
+        QElapsedTimer since = {};
+    };
+    // Makes one step of this nudge, which began at `before`, and the one right before it, where they are
+    // alike.
+    void joinNudge(uint64_t before, ToolKeyCode code);
+
     Tool& current() const { return *mTools[size_t(mCurrent)]; }
     // Hands the event on where the tool can be used.
     void send(void (Tool::*handler)(const ToolEvent&), const ToolEvent& event);
@@ -67,6 +81,7 @@ class ToolManager : public QObject, private ToolHost {
     QPointer<DocumentSession> mSession;
     ToolOptions mOptions;
     FinishGesture mFinish = finishNow;
+    Nudge mNudge;
     ToolId mCurrent = ToolId::Select;
     std::array<std::unique_ptr<Tool>, size_t(ToolId::Count)> mTools;
 };

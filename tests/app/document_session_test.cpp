@@ -109,5 +109,15 @@ TEST_F(DocumentSessionTest, SuggestsNamesBesideTheFile) {
     EXPECT_EQ(photo.displayName(), "cat.small.jpg");
 }
 
+TEST_F(DocumentSessionTest, SuggestsNoNameThatWouldReplaceThePhoto) {
+    const DocumentSession photo({}, {.path = "/photos/cat.PNG"}, {});
+    EXPECT_EQ(photo.suggestedPath("png"), "/photos/cat-vector.png");
+    EXPECT_EQ(photo.suggestedPath("jpg"), "/photos/cat.jpg");
+    const DocumentSession saved({}, {.path = "/photos/cat.png"}, "/photos/cat.tessera");
+    EXPECT_EQ(saved.suggestedPath("png"), "/photos/cat-vector.png");
+    const DocumentSession elsewhere({}, {.path = "/photos/cat.png"}, "/work/cat.tessera");
+    EXPECT_EQ(elsewhere.suggestedPath("png"), "/work/cat.png");
+}
+
 }  // namespace
 }  // namespace tessera

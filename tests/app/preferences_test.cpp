@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <QSettings>
+#include <QStandardPaths>
+#include <QTemporaryDir>
 
 namespace tessera {
 namespace {
@@ -36,6 +38,18 @@ TEST_F(SettingsTest, DefaultsAndWhatWasSet) {
     EXPECT_EQ(Settings().autosaveSeconds(), 0);
     EXPECT_EQ(Settings().threads(), 3);
     EXPECT_EQ(Settings().historyBytes(), size_t{64} << 20);
+}
+
+TEST_F(SettingsTest, DialogsNeverStartInTheCache) {
+    const QTemporaryDir home;
+    Settings().setFolder(home.path());
+    EXPECT_EQ(Settings().folder(), home.path());
+    const QString cache = QStandardPaths::writableLocation(QStandardPaths::CacheLocation);
+    Settings().setFolder(cache);
+    EXPECT_EQ(Settings().folder(), home.path());
+    EXPECT_EQ(Settings().outsideCache(cache + "/sample.tessera"), home.filePath("sample.tessera"));
+    EXPECT_EQ(Settings().outsideCache("/photos/cat.png"), "/photos/cat.png");
+    EXPECT_EQ(Settings().outsideCache(cache + "s/cat.png"), cache + "s/cat.png");
 }
 
 TEST_F(SettingsTest, NonsenseIsIgnored) {

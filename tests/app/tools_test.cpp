@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <QSignalSpy>
+#include <QTest>
 
 #include "app/edit_actions.h"
 #include "app/selection_actions.h"
@@ -21,12 +22,12 @@ namespace {
 
 constexpr int kWidth = 120, kHeight = 90;
 
-// 6 x 4 straight cells of two patches each; the left half of one colour, the right half of another, with a
+// 6 x 4 straight cells of two patches each; the first columns of one colour, the others of another, with a
 // feature between them.
-PatchMesh twoHalves() {
+PatchMesh twoParts(uint32_t columns) {
     PatchMesh mesh = testing::gridMesh(kWidth, kHeight, 6, 4);
     const HalfedgeMesh& c = mesh.connectivity();
-    const auto left = [&](PatchId p) { return p.index % 12 < 6; };
+    const auto left = [columns](PatchId p) { return p.index % 12 < 2 * columns; };
     mesh.forEachPatch([&](PatchId p) {
         const std::array colour = left(p) ? std::array{.8f, .3f, .2f} : std::array{.2f, .3f, .8f};
         mesh.setSpline(p, constantSpline(colour));
@@ -44,7 +45,7 @@ PatchMesh twoHalves() {
 struct ToolsTest : ::testing::Test {
     ToolsTest() {
         Document document;
-        document.mesh = twoHalves();
+        document.mesh = twoParts(3);
         session = std::make_unique<DocumentSession>(document, Photo{}, QString());
         tools.setSession(session.get());
     }
@@ -126,6 +127,24 @@ TEST_F(ToolsTest, ADoubleClickSelectsWhatFeaturesEnclose) {
     pointer.doubleClick({95, 70});
     EXPECT_EQ(selected().size(), 24u);
     EXPECT_TRUE(contains(selected(), patchAt({25, 25})));
+}
+
+TEST_F(ToolsTest, ADoubleClickThatFindsMostOfThePictureSaysSo) {
+    QString said;
+    QObject::connect(&tools, &ToolManager::said, [&](const QString& text) { said = text; });
+    pointer.doubleClick({25, 25});
+    EXPECT_EQ(said, QString()) << "one half";
+    Document document;
+    document.mesh = twoParts(4);
+    DocumentSession uneven(document, Photo{}, QString());
+    tools.setSession(&uneven);
+    pointer.doubleClick({115, 25});
+    EXPECT_EQ(uneven.selection().patches().size(), 16u);
+    EXPECT_EQ(said, QString()) << "the smaller part";
+    pointer.doubleClick({25, 25});
+    EXPECT_EQ(uneven.selection().patches().size(), 32u);
+    EXPECT_TRUE(said.contains("most of the picture")) << said.toStdString();
+    tools.setSession(nullptr);
 }
 
 TEST_F(ToolsTest, ALockedPatchIsPassedOverAndSaysSo) {
@@ -323,6 +342,47 @@ TEST_F(ToolsTest, ArrowsNudgeInOneStep) {
     EXPECT_EQ(history().count(), 3);
     session->selection().clear();
     EXPECT_FALSE(tools.keyPress({ToolKeyCode::Left})) << "nothing to nudge: the canvas may scroll";
+}
+
+TEST_F(ToolsTest, NudgesInARowAreOneStep) {
+    tools.setTool(ToolId::Direct);
+    const VertexId v = vertex(2, 2), other = vertex(3, 2);
+    const glm::dvec2 from = place(v);
+    pointer.click(from);
+    for (int i = 0; i < 10; ++i) EXPECT_TRUE(pointer.key(ToolKeyCode::Right));
+    EXPECT_TRUE(pointer.key(ToolKeyCode::Left));
+    EXPECT_EQ(history().count(), 1);
+    const glm::dvec2 moved = place(v);
+    EXPECT_EQ(moved, from + glm::dvec2(9, 0));
+    history().undo();
+    EXPECT_EQ(place(v), from);
+    history().redo();
+    EXPECT_EQ(place(v), moved);
+    // Another direction, other points, another step between, and a state that is in the file.
+    pointer.key(ToolKeyCode::Down);
+    EXPECT_EQ(history().count(), 2);
+    pointer.click(place(other));
+    pointer.key(ToolKeyCode::Down);
+    EXPECT_EQ(history().count(), 3);
+    session->markSaved(session->revision(), "/folder/a.tessera", {});
+    pointer.key(ToolKeyCode::Down);
+    EXPECT_EQ(history().count(), 4);
+    EXPECT_EQ(history().savedIndex(), 3);
+    session->selection().setPatches({patchAt({25, 25})});
+    ASSERT_TRUE(
+        applyEdit(*session, "Paint", [](PatchMesh& mesh) { return testing::paint(mesh, PatchId(0), .5f); }));
+    session->selection().setShape({ControlPointRef::of(other)}, {});
+    pointer.key(ToolKeyCode::Down);
+    EXPECT_EQ(history().count(), 6);
+}
+
+TEST_F(ToolsTest, ANudgeAfterAPauseIsAnotherStep) {
+    tools.setTool(ToolId::Direct);
+    pointer.click(place(vertex(2, 2)));
+    pointer.key(ToolKeyCode::Right);
+    QTest::qWait(1100);
+    pointer.key(ToolKeyCode::Right);
+    EXPECT_EQ(history().count(), 2);
 }
 
 TEST_F(ToolsTest, AMarqueeSelectsVertices) {

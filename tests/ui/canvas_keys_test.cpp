@@ -273,6 +273,20 @@ TEST_F(CanvasKeysTest, FullScreenGoesBackToMaximized) {
     EXPECT_TRUE(window->isMaximized());
 }
 
+TEST_F(CanvasKeysTest, ToolsAreChosenWhileTheFirstPatchesAreBeingMade) {
+    openPhoto();
+    window->panel().setPatches(kPatches);
+    QTest::keyClick(&canvas(), Qt::Key_Return, Qt::ControlModifier);
+    ASSERT_TRUE(workspace().running(JobKind::Vectorize));
+    QTest::keyClick(&canvas(), Qt::Key_Y);
+    EXPECT_EQ(window->tools().tool(), ToolId::Wand);
+    QTest::keyClick(&canvas(), Qt::Key_V);
+    EXPECT_EQ(window->tools().tool(), ToolId::Select);
+    QTest::mouseClick(&canvas(), Qt::LeftButton, {}, canvas().rect().center());
+    ASSERT_TRUE(idle());
+    EXPECT_TRUE(session()->hasMesh());
+}
+
 }  // namespace
 }  // namespace tessera
 

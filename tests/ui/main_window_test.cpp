@@ -142,7 +142,17 @@ TEST_F(MainWindowTest, DraftsFollowTheSliderUntilOneIsApplied) {
         ASSERT_TRUE(QTest::qWaitFor([&] { return canvas().settled() && grab() != before; }, kWaitMs / 10));
         EXPECT_EQ(button->text(), "Apply");
     };
+    const auto says = [&](const QString& words) {
+        for (auto* label : window->findChildren<QLabel*>())
+            if (label->text().contains(words)) return true;
+        return false;
+    };
+    EXPECT_TRUE(says("mean error"));
+    EXPECT_TRUE(says("of 255"));
     drag(.9);
+    EXPECT_TRUE(says("Draft: "));
+    EXPECT_FALSE(says("mean error")) << "a figure of what is not on the canvas";
+    EXPECT_FALSE(says("of 255"));
     const QImage fine = grab();
     EXPECT_GT(difference(fine, document), 0);
     drag(0);
@@ -160,6 +170,9 @@ TEST_F(MainWindowTest, DraftsFollowTheSliderUntilOneIsApplied) {
     QTest::qWait(50);
     ASSERT_TRUE(settled());
     EXPECT_EQ(button->text(), "Vectorize");
+    EXPECT_FALSE(says("Draft: "));
+    EXPECT_TRUE(says("mean error"));
+    EXPECT_TRUE(says("of 255"));
     EXPECT_EQ(difference(grab(), document), 0);
     EXPECT_EQ(window->panel().settings(session()).patches, kPatches);
     drag(.5);
@@ -482,7 +495,8 @@ TEST_F(MainWindowTest, CancelLeavesTheDocumentUntouched) {
     EXPECT_EQ(session()->revision(), revision);
     EXPECT_FALSE(session()->modified());
     EXPECT_EQ(session()->history().count(), 0);
-    EXPECT_TRUE(window->messages().text().isEmpty()) << "what one asked for is no error";
+    EXPECT_FALSE(window->messages().showsError()) << "what one asked for is no error";
+    EXPECT_EQ(window->messages().text(), "Cancelled: Vectorizing disk.png.");
 }
 
 TEST_F(MainWindowTest, AMessageLeavesThePictureWhereItIs) {

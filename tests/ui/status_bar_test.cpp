@@ -6,6 +6,7 @@
 #include <QDirIterator>
 #include <QFile>
 #include <QLabel>
+#include <QMenu>
 #include <QRegularExpression>
 
 #include "app/edit_actions.h"
@@ -57,6 +58,34 @@ TEST_F(MainWindowTest, AnEditedDocumentSaysSoInPlaceOfItsMeanError) {
     session()->history().undo();
     EXPECT_TRUE(says("mean error"));
     EXPECT_FALSE(says("edited"));
+}
+
+TEST_F(MainWindowTest, TheZoomOpensAMenuOfSizes) {
+    openPhoto();
+    const double fitting = canvas().view().scale();
+    auto* zoom = window->status().findChild<QPushButton*>("zoom");
+    ASSERT_NE(zoom, nullptr);
+    EXPECT_FALSE(zoom->toolTip().isEmpty());
+    // A click on the one of these entries that has this text.
+    const auto choose = [&](const QString& text) {
+        QTimer::singleShot(100, window.get(), [&] {
+            auto* menu = qobject_cast<QMenu*>(QApplication::activePopupWidget());
+            ASSERT_NE(menu, nullptr);
+            for (QAction* entry : menu->actions())
+                if (entry->text().remove('&') == text)
+                    return QTest::mouseClick(menu, Qt::LeftButton, {}, menu->actionGeometry(entry).center());
+            menu->close();
+            ADD_FAILURE() << "no " << text.toStdString();
+        });
+        QTest::mouseClick(zoom, Qt::LeftButton);
+    };
+    for (const auto& [text, scale] :
+         {std::pair("100 %", 1.), std::pair("800 %", 8.), std::pair("25 %", .25)}) {
+        choose(text);
+        EXPECT_EQ(canvas().view().scale(), scale) << text;
+    }
+    choose("Fit in Window");
+    EXPECT_EQ(canvas().view().scale(), fitting);
 }
 
 }  // namespace
