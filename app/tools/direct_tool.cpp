@@ -96,8 +96,7 @@ DirectTool::Target DirectTool::targetAt(const ToolEvent& event) const {
     }
     if (!target.point) target.point = nearestVertex(event.point, radius);
     if (!target.point)
-        target.curve =
-            session().query().nearestCurve(event.point, kCurveRadiusPx * event.pxPerScreenPx);
+        target.curve = session().query().nearestCurve(event.point, kCurveRadiusPx * event.pxPerScreenPx);
     return target;
 }
 
@@ -159,7 +158,9 @@ void DirectTool::dragStarted(const ToolEvent&) {
         // A point that is not selected is dragged alone, and selected with that.
         if (std::find(selected.begin(), selected.end(), *mHeld.point) == selected.end())
             selection.setShape({*mHeld.point}, {});
-        openDrag(QObject::tr("Move Points"), ShapeDrag(mesh(), movable()));
+        const bool handle = !isVertex(*mHeld.point);
+        openDrag(handle ? QObject::tr("Move Handle") : QObject::tr("Move Points"),
+                 ShapeDrag(mesh(), movable()));
     } else if (mHeld.curve) {
         selection.setShape({}, {mHeld.curve->edge});
         constexpr double kNearEnd = .05;  // where bending would throw the handles far away
@@ -241,7 +242,7 @@ bool DirectTool::keyPress(const ToolKey& key) {
     if (!direction || DragTool::active()) return false;
     const std::vector<ControlPointRef> points = movable();
     if (points.empty()) return false;
-    if (!mNudging && !openDrag(QObject::tr("Nudge"), ShapeDrag(mesh(), points))) return true;
+    if (!mNudging && !openDrag(QObject::tr("Nudge Points"), ShapeDrag(mesh(), points))) return true;
     mNudging = true;
     const double step = key.modifiers.alt ? key.pxPerScreenPx : key.modifiers.shift ? 10 : 1;
     showDrag(mOffset + step * *direction, false);
@@ -262,13 +263,12 @@ ToolOverlay DirectTool::overlay() const {
     overlay.curves = selection.curves();
     if (mHover.curve) overlay.hoveredCurve = mHover.curve->edge;
     const auto add = [&](const ControlPointRef& point, bool hovered) {
-        const bool selected =
-            std::binary_search(selection.points().begin(), selection.points().end(), point);
-        overlay.handles.push_back({.shape = isVertex(point) ? OverlayHandle::Shape::Vertex
-                                                            : OverlayHandle::Shape::Control,
-                                   .at = pixelPosition(mesh(), point),
-                                   .selected = selected,
-                                   .hovered = hovered});
+        const bool selected = std::binary_search(selection.points().begin(), selection.points().end(), point);
+        overlay.handles.push_back(
+            {.shape = isVertex(point) ? OverlayHandle::Shape::Vertex : OverlayHandle::Shape::Control,
+             .at = pixelPosition(mesh(), point),
+             .selected = selected,
+             .hovered = hovered});
         if (point.kind != ControlPointHit::Kind::CurveInner) return;
         const VertexId end = mesh().connectivity().origin(point.halfedge);
         overlay.handleLines.push_back({toPixels(mesh().position(end)), overlay.handles.back().at});
