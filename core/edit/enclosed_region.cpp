@@ -1,5 +1,6 @@
 // See enclosed_region.h. A watershed of the distance to the nearest feature: places join by falling clearance
-// of the way between them, so that two regions meet where the passage between them is narrowest.
+// of the way between them, so that two regions meet where the passage between them is narrowest. Where its
+// outline holds badly, colours say more (region_merging.h).
 #include "core/edit/enclosed_region.h"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "core/base/parallel.h"
 #include "core/edit/distance_grid.h"
 #include "core/edit/flood.h"
+#include "core/edit/region_merging.h"
 
 namespace tessera {
 
@@ -180,13 +182,8 @@ class Regions {
     std::vector<double> mWidest;  // by root: the largest clearance
 };
 
-}  // namespace
-
-PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed, double gapPx) {
-    TESSERA_CHECK(gapPx >= 0 && gapPx <= kMostGapPx);
-    const PatchSet within =
-        flood(mesh, seed, [&](EdgeId e) { return !mesh.curve(e).feature; }, [](PatchId) { return true; });
-    if (gapPx == 0) return selectableOf(mesh, within);
+// The watershed around the seed of what features enclose.
+PatchSet withoutGaps(const PatchMesh& mesh, const PatchSet& within, PatchId seed, double gapPx) {
     Ground ground(mesh, within, gapPx);
     Regions regions(ground.places());
     for (const Way& way : ground.takeWays(gapPx)) regions.walk(way, gapPx);
@@ -194,7 +191,22 @@ PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed, double gapPx) {
     PatchSet found;
     for (const PatchId p : within)
         if (regions.of(ground.centreOf(p)) == home) found.push_back(p);
-    return selectableOf(mesh, std::move(found));
+    return found;
+}
+
+}  // namespace
+
+PatchSet enclosedByFeatures(const PatchMesh& mesh, const PatchColours& colours, PatchId seed, double gapPx) {
+    TESSERA_CHECK(gapPx >= 0 && gapPx <= kMostGapPx);
+    const PatchSet within =
+        flood(mesh, seed, [&](EdgeId e) { return !mesh.curve(e).feature; }, [](PatchId) { return true; });
+    if (gapPx == 0) return selectableOf(mesh, within);
+    PatchSet found = withoutGaps(mesh, within, seed, gapPx);
+    return selectableOf(mesh, betterHeld(mesh, colours, within, std::move(found), seed));
+}
+
+PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed, double gapPx) {
+    return enclosedByFeatures(mesh, PatchColours(mesh), seed, gapPx);
 }
 
 }  // namespace tessera
