@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t kNone = ~0U;
 // An outline this strong holds what is in it, whatever the colours.
-constexpr double kHolds = .92;
+constexpr double kHolds = .88;
 // Shading changes lightness within a thing more than hue and chroma, so it counts for less.
 constexpr glm::dvec3 kWeights(.4, 1, 1);
 // Colours this far apart, lightness weighted, hold as a feature does.
