@@ -21,6 +21,8 @@ namespace {
 
 // A passage is a gap where it is narrower than this share of the regions that it joins.
 constexpr double kGapShare = .5;
+// An outline this strong (region_merging.h) holds what is in it, whatever the colours.
+constexpr double kHolds = .88;
 constexpr double kWallTolerancePx = .25;
 constexpr Barycentric kCentre(1. / 3, 1. / 3, 1. / 3);
 
@@ -201,8 +203,20 @@ PatchSet enclosedByFeatures(const PatchMesh& mesh, const PatchColours& colours, 
     const PatchSet within =
         flood(mesh, seed, [&](EdgeId e) { return !mesh.curve(e).feature; }, [](PatchId) { return true; });
     if (gapPx == 0) return selectableOf(mesh, within);
-    PatchSet found = withoutGaps(mesh, within, seed, gapPx);
-    return selectableOf(mesh, betterHeld(mesh, colours, within, std::move(found), seed));
+    PatchSet found;
+    HeldRegion held;
+    // Side by side: neither needs the other.
+    parallelFor(2, 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            if (i == 0)
+                found = withoutGaps(mesh, within, seed, gapPx);
+            else
+                held = bestHeld(mesh, colours, within, seed);
+    });
+    const double strength = outlineStrength(mesh, colours, within, found);
+    if (strength < kHolds && !held.patches.empty() && held.strength >= strength)
+        found = std::move(held.patches);
+    return selectableOf(mesh, std::move(found));
 }
 
 PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed, double gapPx) {

@@ -14,7 +14,7 @@ constexpr double kMostGapPx = 100;
 // picture's border) that is narrower than gapPx (0..kMostGapPx) and than half of what lies on either side of
 // it. So narrow regions and the corners of wide ones are whole. Where features hold too little of the outline
 // of that, and a region of the same patches has a stronger one, made of features and of edges where colours
-// change, that region (betterHeld). With 0, features alone count.
+// change, that region (bestHeld). With 0, features alone count.
 PatchSet enclosedByFeatures(const PatchMesh& mesh, const PatchColours& colours, PatchId seed, double gapPx);
 PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed, double gapPx);
 

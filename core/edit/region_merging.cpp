@@ -16,8 +16,6 @@ namespace tessera {
 namespace {
 
 constexpr uint32_t kNone = ~0U;
-// An outline this strong holds what is in it, whatever the colours.
-constexpr double kHolds = .88;
 // Shading changes lightness within a thing more than hue and chroma, so it counts for less.
 constexpr glm::dvec3 kWeights(.4, 1, 1);
 // Colours this far apart, lightness weighted, hold as a feature does.
@@ -163,8 +161,8 @@ class Merging {
         std::make_heap(mQueue.begin(), mQueue.end());
     }
 
-    // The numbers of the best region's parts.
-    std::optional<std::vector<uint32_t>> best(uint32_t seed, double atLeast) {
+    // The numbers of the best region's parts; raises `atLeast` to its strength.
+    std::optional<std::vector<uint32_t>> best(uint32_t seed, double& atLeast) {
         std::vector<std::pair<uint32_t, uint32_t>> merges;
         std::optional<size_t> bestAt;
         uint32_t home = seed;
@@ -284,18 +282,22 @@ class Merging {
 
 }  // namespace
 
-PatchSet betterHeld(const PatchMesh& mesh, const PatchColours& colours, const PatchSet& within,
-                    PatchSet region, PatchId seed) {
-    TESSERA_CHECK(contains(region, seed));
-    std::vector<Region> regions = regionsOf(mesh, colours, within);
-    const double strength = outlineStrength(regions, within, membership(mesh, region));
-    if (strength >= kHolds) return region;
+double outlineStrength(const PatchMesh& mesh, const PatchColours& colours, const PatchSet& within,
+                       const PatchSet& region) {
+    return outlineStrength(regionsOf(mesh, colours, within), within, membership(mesh, region));
+}
+
+HeldRegion bestHeld(const PatchMesh& mesh, const PatchColours& colours, const PatchSet& within,
+                    PatchId seed) {
+    TESSERA_CHECK(contains(within, seed));
     const auto at = std::lower_bound(within.begin(), within.end(), seed);
-    const auto parts = Merging(std::move(regions)).best(uint32_t(at - within.begin()), strength);
-    if (!parts) return region;
-    PatchSet found;
-    for (const uint32_t part : *parts) found.push_back(within[part]);
-    return found;
+    double strength = 0;
+    const auto parts =
+        Merging(regionsOf(mesh, colours, within)).best(uint32_t(at - within.begin()), strength);
+    if (!parts) return {};
+    HeldRegion held{{}, strength};
+    for (const uint32_t part : *parts) held.patches.push_back(within[part]);
+    return held;
 }
 
 }  // namespace tessera
