@@ -74,7 +74,7 @@ void SelectTool::doubleClick(const ToolEvent& event) {
     if (!hit || mesh().attributes(hit->patch).locked) return;
     // In the way of the modifiers, of what the first of the two clicks has left.
     pressed(event);
-    const PatchSet found = enclosedByFeatures(mesh(), hit->patch, options().gapPx);
+    const PatchSet found = enclosedByFeatures(mesh(), session().colours(), hit->patch, options().gapPx);
     select(found, event.modifiers);
     if (double(found.size()) > kTooMany * double(mesh().patchCount()))
         host().say(QObject::tr(

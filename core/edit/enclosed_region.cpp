@@ -1,5 +1,6 @@
 // See enclosed_region.h. A watershed of the distance to the nearest feature: places join by falling clearance
-// of the way between them, so that two regions meet where the passage between them is narrowest.
+// of the way between them, so that two regions meet where the passage between them is narrowest. Where its
+// outline holds badly, colours say more (region_merging.h).
 #include "core/edit/enclosed_region.h"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "core/base/parallel.h"
 #include "core/edit/distance_grid.h"
 #include "core/edit/flood.h"
+#include "core/edit/region_merging.h"
 
 namespace tessera {
 
@@ -19,6 +21,8 @@ namespace {
 
 // A passage is a gap where it is narrower than this share of the regions that it joins.
 constexpr double kGapShare = .5;
+// An outline this strong (region_merging.h) holds what is in it, whatever the colours.
+constexpr double kHolds = .88;
 constexpr double kWallTolerancePx = .25;
 constexpr Barycentric kCentre(1. / 3, 1. / 3, 1. / 3);
 
@@ -180,13 +184,8 @@ class Regions {
     std::vector<double> mWidest;  // by root: the largest clearance
 };
 
-}  // namespace
-
-PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed, double gapPx) {
-    TESSERA_CHECK(gapPx >= 0 && gapPx <= kMostGapPx);
-    const PatchSet within =
-        flood(mesh, seed, [&](EdgeId e) { return !mesh.curve(e).feature; }, [](PatchId) { return true; });
-    if (gapPx == 0) return selectableOf(mesh, within);
+// The watershed around the seed of what features enclose.
+PatchSet withoutGaps(const PatchMesh& mesh, const PatchSet& within, PatchId seed, double gapPx) {
     Ground ground(mesh, within, gapPx);
     Regions regions(ground.places());
     for (const Way& way : ground.takeWays(gapPx)) regions.walk(way, gapPx);
@@ -194,7 +193,34 @@ PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed, double gapPx) {
     PatchSet found;
     for (const PatchId p : within)
         if (regions.of(ground.centreOf(p)) == home) found.push_back(p);
+    return found;
+}
+
+}  // namespace
+
+PatchSet enclosedByFeatures(const PatchMesh& mesh, const PatchColours& colours, PatchId seed, double gapPx) {
+    TESSERA_CHECK(gapPx >= 0 && gapPx <= kMostGapPx);
+    const PatchSet within =
+        flood(mesh, seed, [&](EdgeId e) { return !mesh.curve(e).feature; }, [](PatchId) { return true; });
+    if (gapPx == 0) return selectableOf(mesh, within);
+    PatchSet found;
+    HeldRegion held;
+    // Side by side: neither needs the other.
+    parallelFor(2, 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            if (i == 0)
+                found = withoutGaps(mesh, within, seed, gapPx);
+            else
+                held = bestHeld(mesh, colours, within, seed);
+    });
+    const double strength = outlineStrength(mesh, colours, within, found);
+    if (strength < kHolds && !held.patches.empty() && held.strength >= strength)
+        found = std::move(held.patches);
     return selectableOf(mesh, std::move(found));
+}
+
+PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed, double gapPx) {
+    return enclosedByFeatures(mesh, PatchColours(mesh), seed, gapPx);
 }
 
 }  // namespace tessera

@@ -63,7 +63,7 @@ void measureSelection(const PatchMesh& mesh) {
             [&](int i) { found += wand(mesh, colours, seed(i), {.1, false}).size(); });
     measure("wand without colours", 5, [&](int i) { found += wand(mesh, seed(i), {}).size(); });
     measure("region enclosed by features", 41,
-            [&](int i) { found += enclosedByFeatures(mesh, seed(i), 32).size(); });
+            [&](int i) { found += enclosedByFeatures(mesh, colours, seed(i), 32).size(); });
     const PatchSet set = region(mesh, seed(3), mesh.patchCount() / 4);
     measure("grow a quarter", 11, [&](int) { found += grown(mesh, set).size(); });
     measure("outline of a quarter", 11, [&](int) { found += outline(mesh, set).size(); });

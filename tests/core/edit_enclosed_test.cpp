@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <glm/geometric.hpp>
 #include <random>
 
@@ -115,6 +116,54 @@ TEST(EnclosedRegion, LeavesOutWhatCannotBeSelectedAndPassesIt) {
     for (const PatchId p : cells({5, 0}, {6, kRows})) mesh.setAttributes(p, {false, true, false});
     EXPECT_EQ(enclosedByFeatures(mesh, patchIn(0, 0), 16),
               subtracted(cells({0, 0}, {12, kRows}), cells({5, 0}, {6, kRows})));
+}
+
+void paintPatch(PatchMesh& mesh, uint32_t p, std::array<float, 3> colour) {
+    mesh.setSpline(PatchId(p), constantSpline(colour));
+}
+
+// One colour for a set of patches.
+void paint(PatchMesh& mesh, const PatchSet& patches, std::array<float, 3> srgb) {
+    for (const PatchId p : patches) paintPatch(mesh, p.index, srgb);
+}
+
+TEST(EnclosedRegion, ClosesWideGapsWhereColoursChange) {
+    PatchMesh mesh = ground();
+    const PatchSet everything = cells({0, 0}, {kColumns, kRows}), thing = cells({8, 4}, {16, 12});
+    paint(mesh, everything, {.7F, .7F, .6F});
+    paint(mesh, thing, {.1F, .5F, .5F});
+    // A frame with one side missing: 80 px wide.
+    wall(mesh, {8, 4}, {16, 4});
+    wall(mesh, {8, 4}, {8, 12});
+    wall(mesh, {16, 4}, {16, 12});
+    EXPECT_EQ(enclosedByFeatures(mesh, patchIn(9, 5), 24), thing);
+    EXPECT_EQ(enclosedByFeatures(mesh, patchIn(14, 11), 24), thing);
+    // Features alone count.
+    EXPECT_EQ(enclosedByFeatures(mesh, patchIn(9, 5), 0), everything);
+}
+
+TEST(EnclosedRegion, KeepsWhatFeaturesEncloseWhateverTheColours) {
+    PatchMesh mesh = ground();
+    const PatchSet thing = cells({8, 4}, {16, 12});
+    paint(mesh, cells({0, 0}, {kColumns, kRows}), {.7F, .7F, .6F});
+    paint(mesh, cells({8, 4}, {12, 12}), {.1F, .5F, .5F});
+    paint(mesh, cells({12, 4}, {16, 12}), {.8F, .1F, .1F});
+    wall(mesh, {8, 4}, {16, 4});
+    wall(mesh, {8, 12}, {16, 12});
+    wall(mesh, {8, 4}, {8, 12});
+    wall(mesh, {16, 4}, {16, 12});
+    EXPECT_EQ(enclosedByFeatures(mesh, patchIn(9, 5), 24), thing);
+    EXPECT_EQ(enclosedByFeatures(mesh, patchIn(14, 11), 24), thing);
+}
+
+TEST(EnclosedRegion, IsEverythingWhereNothingHolds) {
+    PatchMesh mesh = ground();
+    const PatchSet everything = cells({0, 0}, {kColumns, kRows});
+    EXPECT_EQ(enclosedByFeatures(mesh, patchIn(9, 5), 24), everything);
+    // Nearly flat, in two halves.
+    paint(mesh, everything, {.5F, .5F, .5F});
+    paint(mesh, cells({12, 0}, {kColumns, kRows}), {.51F, .5F, .5F});
+    EXPECT_EQ(enclosedByFeatures(mesh, patchIn(9, 5), 24), everything);
 }
 
 TEST(DistanceGrid, IsTheDistanceToTheNearestSegment) {
