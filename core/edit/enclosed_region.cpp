@@ -214,7 +214,9 @@ PatchSet enclosedByFeatures(const PatchMesh& mesh, const PatchColours& colours, 
                 held = bestHeld(mesh, colours, within, seed);
     });
     const double strength = outlineStrength(mesh, colours, within, found);
-    if (strength < kHolds && !held.patches.empty() && held.strength >= strength)
+    // Features leave out parts of outlines, so that too much is found; what they close off is meant.
+    if (strength < kHolds && !held.patches.empty() && held.strength >= strength &&
+        held.patches.size() < found.size())
         found = std::move(held.patches);
     return selectableOf(mesh, std::move(found));
 }

@@ -13,8 +13,8 @@ constexpr double kMostGapPx = 100;
 // feature, those that can be without passing a gap: a passage between features (or a feature and the
 // picture's border) that is narrower than gapPx (0..kMostGapPx) and than half of what lies on either side of
 // it. So narrow regions and the corners of wide ones are whole. Where features hold too little of the outline
-// of that, and a region of the same patches has a stronger one, made of features and of edges where colours
-// change, that region (bestHeld). With 0, features alone count.
+// of that, and a smaller region of the same patches has a stronger one, made of features and of edges where
+// colours change, that region (bestHeld). With 0, features alone count.
 PatchSet enclosedByFeatures(const PatchMesh& mesh, const PatchColours& colours, PatchId seed, double gapPx);
 PatchSet enclosedByFeatures(const PatchMesh& mesh, PatchId seed, double gapPx);
 

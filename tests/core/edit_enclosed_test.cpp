@@ -156,6 +156,24 @@ TEST(EnclosedRegion, KeepsWhatFeaturesEncloseWhateverTheColours) {
     EXPECT_EQ(enclosedByFeatures(mesh, patchIn(14, 11), 24), thing);
 }
 
+// Though the colours beyond are a stronger outline.
+TEST(EnclosedRegion, DoesNotGrowBeyondClosedGaps) {
+    PatchMesh mesh = ground();
+    paint(mesh, cells({0, 0}, {kColumns, kRows}), {.7F, .7F, .6F});
+    paint(mesh, cells({3, 0}, {21, kRows}), {.1F, .5F, .5F});
+    for (const int y : {5, 11}) {
+        wall(mesh, {9, y}, {11, y});
+        wall(mesh, {13, y}, {15, y});
+    }
+    for (const int x : {9, 15}) {
+        wall(mesh, {x, 5}, {x, 7});
+        wall(mesh, {x, 9}, {x, 11});
+    }
+    const PatchSet found = enclosedByFeatures(mesh, patchIn(11, 7), 24);
+    EXPECT_TRUE(subtracted(cells({10, 6}, {14, 10}), found).empty());
+    EXPECT_TRUE(subtracted(found, cells({8, 4}, {16, 12})).empty());
+}
+
 TEST(EnclosedRegion, IsEverythingWhereNothingHolds) {
     PatchMesh mesh = ground();
     const PatchSet everything = cells({0, 0}, {kColumns, kRows});
