@@ -39,7 +39,7 @@ bool Progress::step(double fraction) {
         if (due() || (ends && mTotal < std::min(1.0, mDone + mWeight)))
             report(std::clamp(fraction, 0.0, 1.0));
     }
-    return true;
+    return !stopRequested();  // whoever was told may have asked for it
 }
 
 void Progress::report(double fraction) {

@@ -89,6 +89,16 @@ TEST(Progress, StopsOnRequest) {
     EXPECT_EQ(r.reports.size(), 1U) << "a stopped job reports no more";
 }
 
+TEST(Progress, AStopThatAReportBringsIsHeededByItsStep) {
+    std::stop_source stop;
+    Progress progress(stop.get_token(), [&](std::string_view, double fraction, double) {
+        if (fraction >= 1) stop.request_stop();
+    });
+    progress.beginStage("only", 1);
+    EXPECT_TRUE(progress.step(.5));
+    EXPECT_FALSE(progress.step(1));
+}
+
 TEST(Progress, ReportsAtMostFiftyTimesASecond) {
     Recorder r;
     const auto start = std::chrono::steady_clock::now();
