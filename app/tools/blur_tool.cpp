@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/edit/blur_room.h"
 #include "core/edit/edge_edits.h"
 
 namespace tessera {
@@ -93,6 +94,7 @@ void BlurTool::clicked(const ToolEvent&) {
 void BlurTool::dragStarted(const ToolEvent&) {
     if (!mHeld || !begin(mEdit, QObject::tr("Soften"))) return;
     mEdges = options().wholeFeatures ? wholeFeature(mesh(), mHeld->edge) : std::vector{mHeld->edge};
+    mRoom = blurRoom(session().query(), mEdges);
 }
 
 void BlurTool::dragged(const ToolEvent& event) {
@@ -104,7 +106,7 @@ void BlurTool::dragged(const ToolEvent& event) {
     std::array<double, 2> ends{sigma, sigma};
     if (mEdges.size() == 1 && mHeld->t < kEndShare) ends[1] = double(curve.blurSigma[1]);
     if (mEdges.size() == 1 && mHeld->t > 1 - kEndShare) ends[0] = double(curve.blurSigma[0]);
-    report(mEdit->preview([&](PatchMesh& mesh) { return setBlur(mesh, mEdges, ends[0], ends[1]); }));
+    report(mEdit->preview([&](PatchMesh& mesh) { return setBlur(mesh, mEdges, ends[0], ends[1], mRoom); }));
 }
 
 void BlurTool::dropped(const ToolEvent&) {
@@ -116,6 +118,7 @@ void BlurTool::abandoned() {
     mEdit.reset();
     mHeld.reset();
     mEdges.clear();
+    mRoom.clear();
 }
 
 ToolOverlay BlurTool::overlay() const {

@@ -1,6 +1,7 @@
 // The tool that makes features sharp or soft by a handle on the canvas.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "app/edit_session.h"
@@ -10,7 +11,8 @@ namespace tessera {
 
 // A press takes hold of a feature or of the handle beside it; away from the curve is softer. The handle is as
 // far from the curve as the blur reaches. It changes the whole feature, from junction to junction, by the
-// same widths, or the one curve; near the end of a single curve that end alone.
+// same widths, or the one curve; near the end of a single curve that end alone. The blur grows no further
+// than the next feature leaves room (blur_room.h).
 class BlurTool : public DragTool {
   public:
     using DragTool::DragTool;
@@ -34,6 +36,7 @@ class BlurTool : public DragTool {
     std::optional<CurveHit> mHover;
     std::optional<CurveHit> mHeld;
     std::vector<EdgeId> mEdges;
+    std::vector<std::array<double, 2>> mRoom;  // for mEdges
     std::optional<EditSession> mEdit;
     double mPxPerScreenPx = 1;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/check.h"
 #include "core/edit/colour_samples.h"
 
 namespace tessera {
@@ -73,7 +74,9 @@ bool hasJump(const PatchMesh& mesh, EdgeId e) {
 
 }  // namespace
 
-Result<Touched> setBlur(PatchMesh& mesh, std::span<const EdgeId> edges, double sigmaStart, double sigmaEnd) {
+Result<Touched> setBlur(PatchMesh& mesh, std::span<const EdgeId> edges, double sigmaStart, double sigmaEnd,
+                        std::span<const std::array<double, 2>> room) {
+    TESSERA_CHECK(room.empty() || room.size() == edges.size());
     if (const auto sound = checkAlive(mesh, edges); !sound) return tl::unexpected<Error>(sound.error());
     const auto inRange = [](double sigma) { return sigma >= 0 && sigma <= kWidestBlurPx; };
     if (!inRange(sigmaStart) || !inRange(sigmaEnd))
@@ -94,11 +97,15 @@ Result<Touched> setBlur(PatchMesh& mesh, std::span<const EdgeId> edges, double s
     };
     for (size_t i = 0; i < edges.size(); ++i) {
         EdgeCurve curve = mesh.curve(edges[i]);
-        curve.blurSigma = {float(sigmaStart), float(sigmaEnd)};
+        std::array<float, 2> sigma{float(sigmaStart), float(sigmaEnd)};
         if (!path.empty()) {
             const bool along = HalfedgeMesh::halfedge(edges[i]) == path[i];
-            curve.blurSigma = {sigmaAt(along ? i : i + 1), sigmaAt(along ? i + 1 : i)};
+            sigma = {sigmaAt(along ? i : i + 1), sigmaAt(along ? i + 1 : i)};
         }
+        if (!room.empty())
+            for (size_t end = 0; end < 2; ++end)
+                sigma[end] = std::min(sigma[end], std::max(curve.blurSigma[end], float(room[i][end])));
+        curve.blurSigma = sigma;
         mesh.setCurve(edges[i], curve);
     }
     return touchedOf({}, {edges.begin(), edges.end()}, patchesBeside(mesh, edges));

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "core/edit/blur_room.h"
 #include "core/edit/edge_edits.h"
 #include "core/edit/split_merge.h"
 #include "core/mesh/jacobian.h"
@@ -300,6 +301,63 @@ TEST(SetBlur, RunsAlongAPath) {
     EXPECT_FALSE(setBlur(mesh, path, -1, -1));
     EXPECT_FALSE(setBlur(mesh, path, 65, 65));
     expectValid(mesh);
+}
+
+// Marks a part of the grid's column at x as a feature.
+std::vector<EdgeId> column(PatchMesh& mesh, double x, double from, double to) {
+    std::vector<EdgeId> edges;
+    for (double y = from; y < to; y += 20)
+        edges.push_back(
+            HalfedgeMesh::edge(mesh.connectivity().find(vertexAt(mesh, x, y), vertexAt(mesh, x, y + 20))));
+    EXPECT_TRUE(setFeature(mesh, edges, true));
+    return edges;
+}
+
+TEST(BlurRoom, IsAThirdOfTheDistanceToTheNextFeature) {
+    PatchMesh mesh = gridMesh(400, 200, 20, 10);
+    const std::vector<EdgeId> feature = column(mesh, 100, 0, 200);
+    for (const auto& ends : blurRoom(PatchQuery(mesh), feature))
+        EXPECT_THAT(ends, ::testing::Each(kWidestBlurPx)) << "nothing else is there";
+    column(mesh, 160, 0, 100);
+    const auto room = blurRoom(PatchQuery(mesh), feature);
+    for (size_t i = 0; i < feature.size(); ++i) {
+        const HalfedgeId h = HalfedgeMesh::halfedge(feature[i]);
+        for (const size_t end : {size_t(0), size_t(1)}) {
+            const double y =
+                at(mesh, end == 0 ? mesh.connectivity().origin(h) : mesh.connectivity().target(h)).y;
+            // What is nearest of the half is its end beyond that, 10 px nearer from the middle of a curve.
+            const double beyond = std::max(0., y - 10 - 100);
+            EXPECT_NEAR(room[i][end], std::hypot(60, beyond) / 3, 1e-6) << "at " << y;
+        }
+    }
+    ASSERT_TRUE(setBlur(mesh, feature, 50, 50, room));
+    EXPECT_NEAR(double(mesh.curve(feature[0]).blurSigma[0]), 20, 1e-6);
+    ASSERT_TRUE(setBlur(mesh, feature, 50, 50));
+    ASSERT_TRUE(setBlur(mesh, feature, 40, 40, room)) << "what is softer already may be made sharper";
+    EXPECT_EQ(mesh.curve(feature[0]).blurSigma[0], 40);
+}
+
+TEST(BlurRoom, GrowsWithTheWayToAJunctionOrATip) {
+    PatchMesh mesh = gridMesh(400, 200, 20, 10);
+    const std::vector<EdgeId> down = column(mesh, 100, 0, 200);
+    std::vector<EdgeId> across;
+    for (double x = 100; x < 300; x += 20)
+        across.push_back(HalfedgeMesh::edge(
+            mesh.connectivity().find(vertexAt(mesh, x, 100), vertexAt(mesh, x + 20, 100))));
+    ASSERT_TRUE(setFeature(mesh, across, true));
+    const auto beside = [](double y) { return std::max(std::abs(y - 100) - 10, 10.) / kBlurFade; };
+    const auto room = blurRoom(PatchQuery(mesh), down);
+    for (size_t i = 0; i < down.size(); ++i) {
+        const HalfedgeId h = HalfedgeMesh::halfedge(down[i]);
+        EXPECT_NEAR(room[i][0], beside(at(mesh, mesh.connectivity().origin(h)).y), 1e-6);
+        EXPECT_NEAR(room[i][1], beside(at(mesh, mesh.connectivity().target(h)).y), 1e-6);
+    }
+    // From the junction to a tip: wide in the middle.
+    const auto toTip = blurRoom(PatchQuery(mesh), across);
+    for (size_t i = 0; i < across.size(); ++i) {
+        const double fromMiddle = std::abs(double(i) + .5 - 5) - .5;  // curves
+        EXPECT_NEAR(std::max(toTip[i][0], toTip[i][1]), (90 - 20 * fromMiddle) / kBlurFade, 1e-6) << i;
+    }
 }
 
 TEST(SetFeature, AnUnmarkedOneWithAJumpIsAColourBreak) {
