@@ -3,10 +3,12 @@
 
 #include <QApplication>
 #include <QDockWidget>
+#include <QMainWindow>
 #include <QPainter>
 #include <QPalette>
 #include <QProxyStyle>
 #include <QStyleOption>
+#include <algorithm>
 
 #include "ui/icons.h"
 
@@ -62,7 +64,6 @@ const char* const kSheet = R"(
     QToolBar::separator { background: %1; width: 1px; height: 1px; margin: 4px; }
     QStatusBar { border-top: 1px solid %1; }
     QStatusBar::item { border: none; }
-    QDockWidget::title { padding: 5px 14px 1px 14px; background: %8; }
     QToolTip { color: %2; background: %6; border: 1px solid %1; padding: 4px 6px; }
     QLabel[role="heading"] { color: %3; font-weight: bold; }
     QLabel[role="dim"] { color: %3; }
@@ -87,8 +88,18 @@ const char* const kSheet = R"(
     QFrame[role="line"] { background: %1; border: none; max-height: 1px; min-height: 1px; }
 )";
 
+// Whether a panel's tab, beside those of others, says its name.
+bool namedByTab(const QDockWidget& dock) {
+    const auto* window = qobject_cast<const QMainWindow*>(dock.parentWidget());
+    if (!window || dock.isFloating()) return false;
+    const QList<QDockWidget*> beside = window->tabifiedDockWidgets(const_cast<QDockWidget*>(&dock));
+    return std::any_of(beside.begin(), beside.end(),
+                       [](const QDockWidget* other) { return !other->isHidden(); });
+}
+
 // Fusion without the shadows under disabled text, without pictures in dialogs' buttons and without gradients
-// on the fields that open or count, and with crosses in the theme's colours to close tabs and panels by.
+// on the fields that open or count, with crosses in the theme's colours to close tabs and panels by, and with
+// no second name under a panel's tab.
 class QuietStyle : public QProxyStyle {
   public:
     QuietStyle() : QProxyStyle("Fusion") {}
@@ -111,6 +122,21 @@ class QuietStyle : public QProxyStyle {
         } else {
             QProxyStyle::drawComplexControl(control, option, painter, widget);
         }
+    }
+
+    void drawControl(ControlElement element, const QStyleOption* option, QPainter* painter,
+                     const QWidget* widget) const override {
+        const auto* dock = qobject_cast<const QDockWidget*>(widget);
+        if (element != CE_DockWidgetTitle || !dock)
+            return QProxyStyle::drawControl(element, option, painter, widget);
+        if (namedByTab(*dock)) return;
+        constexpr int kMarginPx = 14;
+        const QRect place = subElementRect(SE_DockWidgetTitleBarText, option, widget)
+                                .intersected(option->rect.adjusted(kMarginPx, 0, 0, 0));
+        const QString title =
+            option->fontMetrics.elidedText(dock->windowTitle(), Qt::ElideRight, place.width());
+        drawItemText(painter, place, Qt::AlignVCenter | Qt::AlignLeft, option->palette, true, title,
+                     QPalette::WindowText);
     }
 
     int styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget,
