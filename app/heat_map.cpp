@@ -14,13 +14,13 @@ namespace {
 constexpr int kRestMs = 150;
 constexpr double kMostOpaque = .85;
 
+}  // namespace
+
 QRgb heatColour(double levels) {
     const double share = std::clamp((levels - kHeatFromLevels) / (kHeatFullLevels - kHeatFromLevels), 0., 1.);
     const double opacity = kMostOpaque * std::sqrt(share);
     return qPremultiply(qRgba(255, int(std::lround(230 * (1 - share))), 30, int(std::lround(255 * opacity))));
 }
-
-}  // namespace
 
 Result<QImage> heatMap(const PatchMesh& mesh, const Image& photo, Progress& progress) {
     const auto drawn = rasterize(mesh, wholePicture(mesh, {1, 1}), {.samples = kPictureSamples}, &progress);

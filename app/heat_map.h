@@ -14,6 +14,7 @@ namespace tessera {
 // The Euclidean distance of the pixels' RGB, in levels of 255: clear up to kHeatFromLevels, which nobody
 // sees, then yellow, red from kHeatFullLevels on. Of the size of the photo, which is that of the mesh.
 constexpr double kHeatFromLevels = 4, kHeatFullLevels = 48;
+QRgb heatColour(double levels);  // premultiplied
 Result<QImage> heatMap(const PatchMesh& mesh, const Image& photo, Progress& progress);
 
 // Keeps the map of a document up to date on a worker while it is wanted.

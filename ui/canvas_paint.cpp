@@ -1,9 +1,12 @@
 // The painting half of the canvas, in device pixels throughout.
+#include <QLocale>
 #include <QPainter>
 #include <QPainterPath>
 #include <algorithm>
 #include <cmath>
 
+#include "app/heat_map.h"
+#include "ui/canvas_tags.h"
 #include "ui/canvas_widget.h"
 #include "ui/centres_painter.h"
 #include "ui/tool_overlay_painter.h"
@@ -14,7 +17,7 @@ namespace {
 
 constexpr int kCheckPx = 8;
 constexpr double kGridFromScale = 8;
-constexpr double kTagTextPx = 12;
+constexpr double kTagGapPx = 8;
 const LineStyle kSelection{QColor(64, 169, 255), QColor(255, 255, 255, 235), 1.6, 3.8};
 const LineStyle kCutOut{QColor(255, 255, 255), QColor(40, 44, 52), 1.2, 2.6, true};
 const LineStyle kHighlight{QColor(255, 255, 255), QColor(0, 0, 0, 200), 1.8, 4.2};
@@ -34,21 +37,6 @@ void drawClipped(QPainter& painter, const QImage& image, const QRectF& area, con
     const QRectF target(area.left() + left * pixelX, area.top() + top * pixelY, source.width() * pixelX,
                         source.height() * pixelY);
     painter.drawImage(target, image, source);
-}
-
-// A word on dark ground, its corner nearest to `at` there: right of it, or left where `leftOf`.
-void drawTag(QPainter& painter, QPointF at, const QString& text, bool leftOf, double ratio) {
-    QFont font = painter.font();
-    font.setPixelSize(int(std::lround(kTagTextPx * ratio)));
-    painter.setFont(font);
-    const QFontMetricsF metrics(font);
-    QRectF box(at, QSizeF(metrics.horizontalAdvance(text) + 12 * ratio, metrics.height() + 4 * ratio));
-    if (leftOf) box.moveRight(at.x());
-    painter.setPen(Qt::NoPen);
-    painter.setBrush(QColor(0, 0, 0, 150));
-    painter.drawRoundedRect(box, 4 * ratio, 4 * ratio);
-    painter.setPen(Qt::white);
-    painter.drawText(box, Qt::AlignCenter, text);
 }
 
 QRectF shownArea(const ViewTransform& view, const Frame& frame) {
@@ -73,16 +61,49 @@ void CanvasWidget::paintEvent(QPaintEvent*) {
     if (mLook.view.scale() >= kGridFromScale * ratio) paintPixelGrid(painter);
     painter.setClipping(false);
     paintOverlays(painter);
+    painter.setRenderHint(QPainter::Antialiasing);
     if (mDrafting && !showsPhoto()) paintDraftTag(painter);
+    paintLegends(painter);
 }
 
 void CanvasWidget::paintDraftTag(QPainter& painter) const {
-    const double ratio = devicePixelRatioF(), gap = 8 * ratio;
+    const double ratio = devicePixelRatioF(), gap = kTagGapPx * ratio;
     const QRectF shown = mLook.view.toScreen(QRectF(QPointF(0, 0), pictureSize())) & deviceRect();
-    painter.save();
-    painter.setRenderHint(QPainter::Antialiasing);
     drawTag(painter, shown.topLeft() + QPointF(gap, gap), tr("Draft"), false, ratio);
-    painter.restore();
+}
+
+void CanvasWidget::paintLegends(QPainter& painter) const {
+    std::vector<Legend> legends;
+    const auto range = [](const QString& from, const QString& to) {
+        return to.isEmpty() ? tr("%1 and more").arg(from) : tr("%1 to %2").arg(from, to);
+    };
+    if (mMesh.patchCount() > 0 && mOverlays.features && mOverlays.tint != FeatureTint::Plain) {
+        const bool blur = mOverlays.tint == FeatureTint::Blur;
+        Legend legend{blur ? tr("Blur, px") : tr("Jump of colour, levels"), {}};
+        const auto name = [&](float value) {
+            return blur ? locale().toString(double(value), 'f', 1)
+                        : locale().toString(std::lround(255 * value));
+        };
+        const auto shades = featureShades(mOverlays.tint);
+        for (size_t i = 0; i < shades.size(); ++i) {
+            const QString to = i + 1 < shades.size() ? name(shades[i + 1].from) : QString();
+            legend.rows.push_back({shades[i].colour, range(name(shades[i].from), to)});
+        }
+        legends.push_back(std::move(legend));
+    }
+    if (!mHeatMap.isNull() && !mDrafting) {
+        Legend legend{tr("Error, levels"), {}};
+        constexpr int kRows = 4;
+        for (int i = 0; i < kRows; ++i) {
+            const double from = kHeatFromLevels + (kHeatFullLevels - kHeatFromLevels) * (i + 1) / kRows;
+            legend.rows.push_back({QColor::fromRgba(qUnpremultiply(heatColour(from))),
+                                   i + 1 < kRows ? locale().toString(std::lround(from))
+                                                 : range(locale().toString(std::lround(from)), {})});
+        }
+        legends.push_back(std::move(legend));
+    }
+    const double ratio = devicePixelRatioF(), gap = kTagGapPx * ratio;
+    drawLegends(painter, {gap, deviceSize().height() - gap}, legends, ratio);
 }
 
 void CanvasWidget::paintPictureManaged(QPainter& painter) const {
@@ -122,7 +143,7 @@ void CanvasWidget::paintSplit(QPainter& painter) const {
     painter.setBrush(Qt::white);
     painter.drawRoundedRect(QRectF(x - 3 * ratio, height / 2 - 18 * ratio, 6 * ratio, 36 * ratio), 3 * ratio,
                             3 * ratio);
-    const double gap = 8 * ratio, top = std::max(0., mLook.view.toScreen(QPointF(0, 0)).y()) + gap;
+    const double gap = kTagGapPx * ratio, top = std::max(0., mLook.view.toScreen(QPointF(0, 0)).y()) + gap;
     drawTag(painter, QPointF(x - gap, top), tr("Photo"), true, ratio);
     drawTag(painter, QPointF(x + gap, top), tr("Vector image"), false, ratio);
     painter.restore();

@@ -204,12 +204,12 @@ QImage CanvasWidget::overviewImage() const {
 void CanvasWidget::setTools(ToolManager* tools, const ActionTable& keys) {
     mTools = tools;
     mKeys = &keys;
-    connect(mTools, &ToolManager::overlayChanged, this, [this] {
+    connect(tools, &ToolManager::overlayChanged, this, [this] {
         updateCursor();
         update();
     });
-    connect(mTools, &ToolManager::toolChanged, this, &CanvasWidget::updateCursor);
-    connect(mTools, &ToolManager::viewRequested, this, &CanvasWidget::changeViewAsAsked);
+    connect(tools, &ToolManager::toolChanged, this, &CanvasWidget::updateCursor);
+    connect(tools, &ToolManager::viewRequested, this, &CanvasWidget::changeViewAsAsked);
 }
 
 void CanvasWidget::setTheme(Theme theme) {

@@ -38,7 +38,7 @@ class CanvasWidget : public QWidget {
     void setScreenColours(const QColorSpace& space);
     // Null: the CPU renderer.
     void setDrawer(std::unique_ptr<FrameDrawer> drawer) { mFrames.setDrawer(std::move(drawer)); }
-    // Whose tools get what pointer and keys do here, and which keys nudge; both outlive the canvas.
+    // Whose tools get what pointer and keys do here, and which keys nudge; the keys outlive the canvas.
     void setTools(ToolManager* tools, const ActionTable& keys);
 
     const ViewTransform& view() const { return mLook.view; }
@@ -135,7 +135,7 @@ class CanvasWidget : public QWidget {
     void reloadMesh();
     void showMesh(const PatchMesh& mesh);
     // The tools, while there is something that they may work on.
-    ToolManager* toolsInUse() const { return mSession && !mDrafting ? mTools : nullptr; }
+    ToolManager* toolsInUse() const { return mSession && !mDrafting ? mTools.data() : nullptr; }
     void follow(const Change& change);
     void remakeOverlay();
     void measureFeatures();
@@ -183,11 +183,12 @@ class CanvasWidget : public QWidget {
     void paintPixelGrid(QPainter& painter) const;
     void paintOverlays(QPainter& painter) const;
     void paintDraftTag(QPainter& painter) const;
+    void paintLegends(QPainter& painter) const;
     void paintVector(QPainter& painter) const;
     void paintFrame(QPainter& painter, const Frame& frame) const;
 
     DocumentSession* mSession = nullptr;
-    ToolManager* mTools = nullptr;
+    QPointer<ToolManager> mTools;
     const ActionTable* mKeys = nullptr;
     PatchMesh mMesh;  // as the frames and overlays show it
     FrameSource mFrames;

@@ -38,19 +38,14 @@ constexpr double kDashPx = 6;
 // there are many lines, they are short and nobody sees notches.
 constexpr size_t kMaxRoundCaps = 4000;
 
-// Features from one value of what their tint is about to the next; so many classes for each tint.
-struct FeatureClass {
-    float from;
-    QColor colour;
-};
-constexpr size_t kFeatureClasses = 4;
-using FeatureScale = std::array<FeatureClass, kFeatureClasses>;
+constexpr size_t kFeatureClasses = 4;  // for each tint
+using FeatureScale = std::array<FeatureShade, kFeatureClasses>;
 const QColor kCrisp(255, 214, 92), kWarm(255, 150, 110), kCool(230, 120, 220), kSoft(120, 170, 255);
 // In px of blur, from crisp to soft, and in levels of jump, from faint to strong.
 const FeatureScale kBlurScale{{{0, kCrisp}, {.6F, kWarm}, {1.2F, kCool}, {2.4F, kSoft}}};
 const FeatureScale kJumpScale{{{0, kSoft}, {16 / 255.F, kCool}, {40 / 255.F, kWarm}, {90 / 255.F, kCrisp}}};
 
-size_t classOf(const FeatureScale& scale, float value) {
+size_t classOf(std::span<const FeatureShade> scale, float value) {
     size_t found = 0;
     for (size_t i = 1; i < scale.size(); ++i)
         if (value >= scale[i].from) found = i;
@@ -170,6 +165,10 @@ QRectF markAt(QPointF centre, double size) {
 }
 
 }  // namespace
+
+std::span<const FeatureShade> featureShades(FeatureTint tint) {
+    return tint == FeatureTint::Importance ? kJumpScale : kBlurScale;
+}
 
 OverlayPainter::Curve OverlayPainter::curveOf(const PatchMesh& mesh, EdgeId edge) {
     const BezierCurve curve = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(edge)));
@@ -308,12 +307,13 @@ void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& ed
                                  double pixelRatio, const OverlayOptions& options) {
     std::vector<QLineF> plain;
     std::array<std::vector<QLineF>, kFeatureClasses> features;
+    const std::span<const FeatureShade> shades = featureShades(options.tint);
     const auto classOfFeature = [&](const Shown& edge) {
         switch (options.tint) {
             case FeatureTint::Blur:
-                return classOf(kBlurScale, edge.blurPx);
+                return classOf(shades, edge.blurPx);
             case FeatureTint::Importance:
-                return classOf(kJumpScale, edge.jump);
+                return classOf(shades, edge.jump);
             case FeatureTint::Plain:
                 break;
         }
@@ -331,10 +331,9 @@ void OverlayPainter::paintCurves(QPainter& painter, const std::vector<Shown>& ed
     std::nth_element(sizes.begin(), median, sizes.end());
     const bool near = *median >= kNearFromPx;
     drawTwoTone(painter, plain, near ? kEdgeNear : kEdgeFar, pixelRatio, *median >= kHaloFromPx);
-    const FeatureScale& scale = options.tint == FeatureTint::Importance ? kJumpScale : kBlurScale;
     for (size_t i = 0; i < features.size(); ++i) {
         LineStyle style = near ? kFeatureNear : kFeatureFar;
-        style.core = scale[i].colour;
+        style.core = shades[i].colour;
         drawTwoTone(painter, features[i], style, pixelRatio, true);
     }
 }

@@ -15,6 +15,14 @@ namespace tessera {
 // What the colour of a feature says: nothing, how soft it is, or how far colours jump across it.
 enum class FeatureTint { Plain, Blur, Importance };
 
+// The colour of features from one value on up to the next: of their blur, px, or of the jump, 0..1.
+struct FeatureShade {
+    float from;
+    QColor colour;
+};
+// By ascending value, the first from 0 on; for a tint that says something.
+std::span<const FeatureShade> featureShades(FeatureTint tint);
+
 struct OverlayOptions {
     bool features = false;
     FeatureTint tint = FeatureTint::Plain;
