@@ -70,12 +70,9 @@ MainWindow::MainWindow()
 }
 
 MainWindow::~MainWindow() {
-    // None of these must look at a session that goes with the workspace before them.
+    // Nothing must look at a session that goes with the workspace, which goes before the widgets.
     mWorkspace.disconnect(this);
-    mTools.setSession(nullptr);
-    mHeatMap.setSession(nullptr);
-    mDrafts.setSession(nullptr);
-    mCanvas->setSession(nullptr);
+    attach(nullptr);
 }
 
 void MainWindow::connectActions() {
@@ -272,6 +269,15 @@ void MainWindow::adoptSession() {
     mMessages->setDocument(session);
     for (const ActionId id : {ActionId::ShowOriginal, ActionId::ShowHeatMap})
         (*mActions)[id]->setChecked(false);
+    attach(session);
+    mNavigator->setPicture(mCanvas->overviewImage());
+    if (session && session->hasMesh()) mPanel->showSettings(session->document().settings);
+    showTabs();
+    showSession();
+    mCanvas->setFocus();
+}
+
+void MainWindow::attach(DocumentSession* session) {
     mTools.setSession(session);
     mCanvas->setSession(session);
     mHeatMap.setSession(session);
@@ -280,11 +286,6 @@ void MainWindow::adoptSession() {
     mSelection->setSession(session);
     mHistory->setSession(session);
     mDrafts.setSession(session);
-    mNavigator->setPicture(mCanvas->overviewImage());
-    if (session && session->hasMesh()) mPanel->showSettings(session->document().settings);
-    showTabs();
-    showSession();
-    mCanvas->setFocus();
 }
 
 void MainWindow::welcome(DocumentSession& session) {

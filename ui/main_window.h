@@ -97,6 +97,8 @@ class MainWindow : public QMainWindow {
     void connectPanels();
     void chooseRenderer();
     void adoptSession();
+    // To all that show or change a document; null for none.
+    void attach(DocumentSession* session);
     void welcome(DocumentSession& session);
     void showSession();
     // What the canvas shows while no document is there.

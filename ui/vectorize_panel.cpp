@@ -12,6 +12,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 #include <cmath>
+#include <functional>
 
 #include "app/document_session.h"
 #include "app/workspace.h"
@@ -202,7 +203,7 @@ QCheckBox* VectorizePanel::makeOption(const QString& text, bool on, void (Settin
     auto* box = new QCheckBox(text);
     box->setChecked(on);
     box->setFocusPolicy(Qt::TabFocus);
-    connect(box, &QCheckBox::toggled, this, [this, set](bool now) { (mSettings.*set)(now); });
+    connect(box, &QCheckBox::toggled, this, [this, set](bool now) { std::invoke(set, mSettings, now); });
     return box;
 }
 
