@@ -8,6 +8,7 @@
 
 #include "app/recolour_gesture.h"
 #include "app/selection_actions.h"
+#include "app/tools/blur_tool.h"
 #include "app/tools/tool_manager.h"
 #include "core/document/codec.h"
 #include "tests/support/test_meshes.h"
@@ -42,6 +43,31 @@ void printFrames(const char* what, int count, const std::function<void(int)>& fr
         most = std::max(most, time);
     }
     std::printf("%-44s %8.2f ms, at most %.2f\n", what, sum / count, most);
+}
+
+// The curve in the middle of the feature of the most curves; none where there are no features.
+EdgeId inLongestFeature(const PatchMesh& mesh) {
+    std::vector<EdgeId> longest;
+    std::vector<bool> seen(mesh.connectivity().edgeCapacity(), false);
+    mesh.forEachEdge([&](EdgeId e) {
+        if (!mesh.curve(e).feature || seen[e.index]) return;
+        std::vector<EdgeId> feature = wholeFeature(mesh, e);
+        for (const EdgeId part : feature) seen[part.index] = true;
+        if (feature.size() > longest.size()) longest = std::move(feature);
+    });
+    return longest.empty() ? EdgeId() : longest[longest.size() / 2];
+}
+
+void soften(ToolManager& tools, const PatchMesh& mesh) {
+    const EdgeId feature = inLongestFeature(mesh);
+    if (!feature.valid()) return;
+    const glm::dvec2 from = toPixels(mesh.controlPoints(HalfedgeMesh::halfedge(feature))).at(.5);
+    std::printf("%-44s %8zu curves\n", "the longest feature", wholeFeature(mesh, feature).size());
+    tools.setTool(ToolId::Blur);
+    tools.press({from});
+    print("softening it, first frame", [&] { tools.move({from + 5.}); });
+    printFrames("softening it, a frame", 20, [&](int i) { tools.move({from + (5. + i)}); });
+    tools.release({from + 25.});
 }
 
 void run(DocumentSession& session) {
@@ -101,6 +127,7 @@ void run(DocumentSession& session) {
     tools.press({at});
     printFrames("brush, a frame", 40, [&](int i) { tools.move({at + glm::dvec2(3. * i, i)}); });
     tools.release({at});
+    soften(tools, session.document().mesh);
     tools.setSession(nullptr);
 }
 
