@@ -11,7 +11,7 @@ namespace tessera {
 // Hidden and locked patches are in none of the results; floods pass through them.
 
 struct WandOptions {
-    double tolerance = .06;       // distance in OKLab from the seed's mean colour
+    double tolerance = .1;        // distance in OKLab from the seed's mean colour
     bool contiguous = true;       // else the whole picture is searched
     bool stopAtFeatures = false;  // a contiguous search does not cross features
 };
