@@ -82,31 +82,62 @@ void addLink(std::vector<Link>& links, uint32_t to, const Side& side) {
         links.insert(at, {to, side});
 }
 
-// By patch id, 1 for what can be reached from the picture's border without the patches that `of` numbers.
-std::vector<uint8_t> reachedFromBorder(const HalfedgeMesh& c, const std::vector<uint32_t>& of) {
-    std::vector<uint8_t> reached(c.faceCapacity(), 0);
-    std::vector<PatchId> front;
-    const auto reach = [&](PatchId p) {
-        if (!p.valid() || of[p.index] != kNone || reached[p.index]) return;
-        reached[p.index] = 1;
-        front.push_back(p);
-    };
-    for (uint32_t i = 0; i < c.faceCapacity(); ++i) {
-        if (!c.alive(PatchId(i))) continue;
-        for (const HalfedgeId side : c.sides(PatchId(i)))
-            if (c.onBorder(HalfedgeMesh::edge(side))) reach(PatchId(i));
+// What the sides of a set's patches are, seen from within it.
+class Sides {
+  public:
+    Sides(const PatchMesh& mesh, const PatchColours& colours, const PatchSet& within)
+        : mMesh(mesh), mColours(colours), mNumbers(mesh.connectivity().faceCapacity(), kNone) {
+        for (uint32_t i = 0; i < within.size(); ++i) mNumbers[within[i].index] = i;
+        reachFromBorder();
     }
-    for (size_t i = 0; i < front.size(); ++i)
-        for (const HalfedgeId side : c.sides(front[i])) reach(c.face(HalfedgeMesh::twin(side)));
-    return reached;
-}
+
+    // That of a patch in the set, kNone for others and beyond the border.
+    uint32_t numberOf(PatchId p) const { return p.valid() ? mNumbers[p.index] : kNone; }
+
+    PatchId beyond(HalfedgeId h) const { return mMesh.connectivity().face(HalfedgeMesh::twin(h)); }
+
+    // Nothing along a hole.
+    Side of(HalfedgeId h) const {
+        const HalfedgeMesh& c = mMesh.connectivity();
+        const double length =
+            glm::distance(toPixels(mMesh.position(c.origin(h))), toPixels(mMesh.position(c.target(h))));
+        const PatchId other = beyond(h);
+        if (!other.valid()) return {kBorderShare * length, 0, 0};
+        if (mNumbers[other.index] == kNone && !mReached[other.index]) return {};
+        const bool feature = mMesh.curve(HalfedgeMesh::edge(h)).feature;
+        const double strength = feature ? 1 : std::min(1., contrast(mColours[c.face(h)], mColours[other]));
+        return {length, length * strength, feature ? 0 : length};
+    }
+
+  private:
+    // What is not a hole: what can be reached from the picture's border without the set.
+    void reachFromBorder() {
+        const HalfedgeMesh& c = mMesh.connectivity();
+        mReached.resize(c.faceCapacity(), 0);
+        std::vector<PatchId> front;
+        const auto reach = [&](PatchId p) {
+            if (!p.valid() || mNumbers[p.index] != kNone || mReached[p.index]) return;
+            mReached[p.index] = 1;
+            front.push_back(p);
+        };
+        for (uint32_t i = 0; i < c.faceCapacity(); ++i) {
+            if (!c.alive(PatchId(i))) continue;
+            for (const HalfedgeId side : c.sides(PatchId(i)))
+                if (c.onBorder(HalfedgeMesh::edge(side))) reach(PatchId(i));
+        }
+        for (size_t i = 0; i < front.size(); ++i)
+            for (const HalfedgeId side : c.sides(front[i])) reach(beyond(side));
+    }
+
+    const PatchMesh& mMesh;
+    const PatchColours& mColours;
+    std::vector<uint32_t> mNumbers;  // by patch id
+    std::vector<uint8_t> mReached;   // by patch id
+};
 
 // Each patch of a set as a region.
 std::vector<Region> regionsOf(const PatchMesh& mesh, const PatchColours& colours, const PatchSet& within) {
-    const HalfedgeMesh& c = mesh.connectivity();
-    std::vector<uint32_t> of(c.faceCapacity(), kNone);
-    for (uint32_t i = 0; i < within.size(); ++i) of[within[i].index] = i;
-    const std::vector<uint8_t> reached = reachedFromBorder(c, of);
+    const Sides sides(mesh, colours, within);
     std::vector<Region> regions(within.size());
     for (uint32_t i = 0; i < within.size(); ++i) {
         const PatchColour& own = colours[within[i]];
@@ -115,22 +146,12 @@ std::vector<Region> regionsOf(const PatchMesh& mesh, const PatchColours& colours
         region.weight = weightOf(own.area);
         region.lab = kWeights * own.lab;
         region.alpha = own.alpha;
-        for (const HalfedgeId h : c.sides(within[i])) {
-            const double length =
-                glm::distance(toPixels(mesh.position(c.origin(h))), toPixels(mesh.position(c.target(h))));
-            const PatchId beyond = c.face(HalfedgeMesh::twin(h));
-            if (!beyond.valid()) {
-                region.outside += {kBorderShare * length, 0, 0};
-                continue;
-            }
-            const bool feature = mesh.curve(HalfedgeMesh::edge(h)).feature;
-            const double strength = feature ? 1 : std::min(1., contrast(own, colours[beyond]));
-            const Side side{length, length * strength, feature ? 0 : length};
-            const uint32_t other = of[beyond.index];
+        for (const HalfedgeId h : mesh.connectivity().sides(within[i])) {
+            const uint32_t other = sides.numberOf(sides.beyond(h));
             if (other != kNone)
-                addLink(region.links, other, side);
-            else if (reached[beyond.index])
-                region.outside += side;
+                addLink(region.links, other, sides.of(h));
+            else
+                region.outside += sides.of(h);
         }
     }
     return regions;
@@ -138,19 +159,6 @@ std::vector<Region> regionsOf(const PatchMesh& mesh, const PatchColours& colours
 
 double meanStrength(const Side& outline) {
     return outline.length > 0 ? outline.strength / outline.length : 0;
-}
-
-// Of some of the patches.
-double outlineStrength(const std::vector<Region>& patches, const PatchSet& within,
-                       const std::vector<uint8_t>& inside) {
-    Side outline;
-    for (size_t i = 0; i < within.size(); ++i) {
-        if (!inside[within[i].index]) continue;
-        outline += patches[i].outside;
-        for (const Link& link : patches[i].links)
-            if (!inside[within[link.to].index]) outline += link.side;
-    }
-    return meanStrength(outline);
 }
 
 class Merging {
@@ -284,7 +292,15 @@ class Merging {
 
 double outlineStrength(const PatchMesh& mesh, const PatchColours& colours, const PatchSet& within,
                        const PatchSet& region) {
-    return outlineStrength(regionsOf(mesh, colours, within), within, membership(mesh, region));
+    const Sides sides(mesh, colours, within);
+    const std::vector<uint8_t> inside = membership(mesh, region);
+    Side outline;
+    for (const PatchId p : region)
+        for (const HalfedgeId h : mesh.connectivity().sides(p)) {
+            const PatchId beyond = sides.beyond(h);
+            if (!beyond.valid() || !inside[beyond.index]) outline += sides.of(h);
+        }
+    return meanStrength(outline);
 }
 
 HeldRegion bestHeld(const PatchMesh& mesh, const PatchColours& colours, const PatchSet& within,
