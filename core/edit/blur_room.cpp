@@ -33,10 +33,10 @@ class Ways {
         queue.emplace(curveOf(mesh, from).part(0, t).length(), c.origin(start).index);
         queue.emplace(curveOf(mesh, from).part(t, 1).length(), c.target(start).index);
         while (!queue.empty()) {
-            const auto [way, vertex] = queue.top();
+            const double way = queue.top().first;
+            const VertexId v(queue.top().second);
             queue.pop();
-            if (way > longest || !mByVertex.try_emplace(vertex, way).second) continue;
-            const VertexId v(vertex);
+            if (way > longest || !mByVertex.try_emplace(v.index, way).second) continue;
             int features = 0;
             c.forEachOutgoing(v, [&](HalfedgeId h) {
                 const EdgeId e = HalfedgeMesh::edge(h);
