@@ -107,6 +107,9 @@ void BlurTool::dragged(const ToolEvent& event) {
     if (mEdges.size() == 1 && mHeld->t < kEndShare) ends[1] = double(curve.blurSigma[1]);
     if (mEdges.size() == 1 && mHeld->t > 1 - kEndShare) ends[0] = double(curve.blurSigma[0]);
     report(mEdit->preview([&](PatchMesh& mesh) { return setBlur(mesh, mEdges, ends[0], ends[1], mRoom); }));
+    constexpr double kNoticedPx = .1;
+    if (sigma > sigmaAt(mesh().curve(mHeld->edge), mHeld->t) + kNoticedPx)
+        host().say(QObject::tr("It cannot become softer here: another feature or its own end is too near."));
 }
 
 void BlurTool::dropped(const ToolEvent&) {

@@ -9,6 +9,7 @@
 #include "app/tools/blur_tool.h"
 #include "app/tools/colour_at.h"
 #include "app/tools/tool_manager.h"
+#include "core/edit/edge_edits.h"
 #include "core/edit/recolour.h"
 #include "core/image/oklab.h"
 #include "core/mesh/mesh_validate.h"
@@ -509,6 +510,32 @@ TEST_F(ToolsTest, TheBlurHandleSoftens) {
     int soft = 0;
     for (const EdgeId edge : wholeFeature(mesh(), e)) soft += sigma(edge)[0] > 0 || sigma(edge)[1] > 0;
     EXPECT_EQ(soft, 1);
+}
+
+TEST_F(ToolsTest, TheBlurHandleStopsWhereThereIsNoMoreRoom) {
+    const HalfedgeId h = mesh().connectivity().find(vertex(3, 1), vertex(3, 2));
+    {
+        // Another feature 20 px beside it.
+        EditSession edit(*session, "Mark");
+        ASSERT_TRUE(edit.preview([](PatchMesh& m) {
+            std::vector<EdgeId> column;
+            for (uint32_t j = 0; j < 4; ++j)
+                column.push_back(HalfedgeMesh::edge(m.connectivity().find(vertex(4, j), vertex(4, j + 1))));
+            return setFeature(m, column, true);
+        }));
+        edit.commit();
+    }
+    QString said;
+    QObject::connect(&tools, &ToolManager::said, [&](const QString& text) { said = text; });
+    tools.setTool(ToolId::Blur);
+    const auto sigma = [&] { return mesh().curve(HalfedgeMesh::edge(h)).blurSigma; };
+    pointer.drag({62, 33}, {70, 33});
+    EXPECT_NEAR(sigma()[0], 8. / 3, .01);
+    EXPECT_TRUE(said.isEmpty()) << said.toStdString();
+    pointer.drag({68, 33}, {10, 33});
+    EXPECT_NEAR(sigma()[0], 20. / 3, .01);
+    EXPECT_NEAR(sigma()[1], 20. / 3, .01);
+    EXPECT_TRUE(said.contains("too near")) << said.toStdString();
 }
 
 TEST_F(ToolsTest, HandAndZoomAskForViews) {
