@@ -19,10 +19,6 @@ namespace {
 // So many elements take less than a tenth of a second.
 constexpr size_t kEditedAtOnce = 50;
 
-QString wholeText(int number) {
-    return QLocale().toString(number);
-}
-
 }  // namespace
 
 bool Workspace::canVectorize() const {
@@ -163,9 +159,11 @@ void Workspace::exportPicture(const ExportRequest& request) {
         Job* job = startExportJob(
             this, target->document().mesh, request, [this, path = request.path](Result<Exported> exported) {
                 if (!exported) return report(exported.error());
-                emit said({.text = tr("Exported “%1”, %2 × %3.")
-                                       .arg(QFileInfo(path).fileName(), wholeText(exported->size.width()),
-                                            wholeText(exported->size.height()))});
+                const QLocale locale;
+                emit said(
+                    {.text = tr("Exported “%1”, %2 × %3.")
+                                 .arg(QFileInfo(path).fileName(), locale.toString(exported->size.width()),
+                                      locale.toString(exported->size.height()))});
             });
         track(job, target);
     });

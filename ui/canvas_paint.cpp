@@ -39,6 +39,36 @@ void drawClipped(QPainter& painter, const QImage& image, const QRectF& area, con
     painter.drawImage(target, image, source);
 }
 
+Legend featureLegend(FeatureTint tint) {
+    const bool blur = tint == FeatureTint::Blur;
+    const QLocale locale;
+    const auto name = [&](float value) {
+        return blur ? locale.toString(double(value), 'f', 1) : locale.toString(std::lround(255 * value));
+    };
+    Legend legend{blur ? CanvasWidget::tr("Blur, px") : CanvasWidget::tr("Jump of colour, levels"), {}};
+    const auto shades = featureShades(tint);
+    for (size_t i = 0; i < shades.size(); ++i) {
+        const QString from = name(shades[i].from);
+        legend.rows.push_back(
+            {shades[i].colour, i + 1 < shades.size()
+                                   ? CanvasWidget::tr("%1 to %2").arg(from, name(shades[i + 1].from))
+                                   : CanvasWidget::tr("%1 and more").arg(from)});
+    }
+    return legend;
+}
+
+Legend heatLegend() {
+    constexpr int kRows = 4;
+    Legend legend{CanvasWidget::tr("Error, levels"), {}};
+    for (int i = 1; i <= kRows; ++i) {
+        const double levels = kHeatFromLevels + (kHeatFullLevels - kHeatFromLevels) * i / kRows;
+        const QString text = QLocale().toString(std::lround(levels));
+        legend.rows.push_back({QColor::fromRgba(qUnpremultiply(heatColour(levels))),
+                               i < kRows ? text : CanvasWidget::tr("%1 and more").arg(text)});
+    }
+    return legend;
+}
+
 QRectF shownArea(const ViewTransform& view, const Frame& frame) {
     const QPointF origin(frame.view.origin.x, frame.view.origin.y);
     return view.toScreen(QRectF(
@@ -74,34 +104,10 @@ void CanvasWidget::paintDraftTag(QPainter& painter) const {
 
 void CanvasWidget::paintLegends(QPainter& painter) const {
     std::vector<Legend> legends;
-    const auto range = [](const QString& from, const QString& to) {
-        return to.isEmpty() ? tr("%1 and more").arg(from) : tr("%1 to %2").arg(from, to);
-    };
-    if (mMesh.patchCount() > 0 && mOverlays.features && mOverlays.tint != FeatureTint::Plain) {
-        const bool blur = mOverlays.tint == FeatureTint::Blur;
-        Legend legend{blur ? tr("Blur, px") : tr("Jump of colour, levels"), {}};
-        const auto name = [&](float value) {
-            return blur ? locale().toString(double(value), 'f', 1)
-                        : locale().toString(std::lround(255 * value));
-        };
-        const auto shades = featureShades(mOverlays.tint);
-        for (size_t i = 0; i < shades.size(); ++i) {
-            const QString to = i + 1 < shades.size() ? name(shades[i + 1].from) : QString();
-            legend.rows.push_back({shades[i].colour, range(name(shades[i].from), to)});
-        }
-        legends.push_back(std::move(legend));
-    }
-    if (!mHeatMap.isNull() && !mDrafting) {
-        Legend legend{tr("Error, levels"), {}};
-        constexpr int kRows = 4;
-        for (int i = 0; i < kRows; ++i) {
-            const double from = kHeatFromLevels + (kHeatFullLevels - kHeatFromLevels) * (i + 1) / kRows;
-            legend.rows.push_back({QColor::fromRgba(qUnpremultiply(heatColour(from))),
-                                   i + 1 < kRows ? locale().toString(std::lround(from))
-                                                 : range(locale().toString(std::lround(from)), {})});
-        }
-        legends.push_back(std::move(legend));
-    }
+    if (mMesh.patchCount() > 0 && mOverlays.features && mOverlays.tint != FeatureTint::Plain)
+        legends.push_back(featureLegend(mOverlays.tint));
+    if (!mHeatMap.isNull() && !mDrafting) legends.push_back(heatLegend());
+    if (legends.empty()) return;
     const double ratio = devicePixelRatioF(), gap = kTagGapPx * ratio;
     drawLegends(painter, {gap, deviceSize().height() - gap}, legends, ratio);
 }

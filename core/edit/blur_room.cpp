@@ -7,6 +7,7 @@
 #include <limits>
 #include <queue>
 #include <unordered_map>
+#include <utility>
 
 #include "core/mesh/blur_profile.h"
 
@@ -106,15 +107,14 @@ std::vector<std::array<double, 2>> blurRoom(const PatchQuery& query, std::span<c
     // By vertex, so that the blur of curves that follow each other stays continuous. The ends themselves are
     // at no distance from an end: it counts from the middles of curves.
     std::unordered_map<uint32_t, double> room;
-    const auto limit = [&](VertexId v, double sigma) {
-        double& least = room.try_emplace(v.index, kWidestBlurPx).first->second;
-        least = std::min(least, sigma);
-    };
     for (const EdgeId e : features) {
         const HalfedgeId h = HalfedgeMesh::halfedge(e);
         const double between = roomAt(query, e, .5, true);
-        limit(c.origin(h), std::min(between, roomAt(query, e, 0, false)));
-        limit(c.target(h), std::min(between, roomAt(query, e, 1, false)));
+        for (const auto& [v, t] : {std::pair(c.origin(h), 0.), std::pair(c.target(h), 1.)}) {
+            const auto [entry, isNew] = room.try_emplace(v.index, 0);
+            if (isNew) entry->second = roomAt(query, e, t, false);
+            entry->second = std::min(entry->second, between);
+        }
     }
     std::vector<std::array<double, 2>> byFeature;
     for (const EdgeId e : features) {
